@@ -105,7 +105,7 @@ def believed(*there):
 def models(monkeypatch):
     for part in (screen, judge, candidate):
         monkeypatch.setattr(ties, part.__name__, part)
-    monkeypatch.setattr(ties, "shortlist", lambda screened, effort: screened)
+    monkeypatch.setattr(ties, "shortlist", lambda models, screened: screened)
     monkeypatch.setattr(ties, "ranked", lambda found: sorted(found, key=lambda c: -c.likelihood_ratio))
     return Known({"gain": 0.0, "inertia": -50.0, "radius": 300.0, "slope": 900.0})
 

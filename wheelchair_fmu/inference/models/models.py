@@ -69,6 +69,12 @@ class Models:
         return self.factory.campaign
 
     @property
+    def promising(self) -> float:
+        """Expected fall below which nothing is refitted. Where forces lead the runs, slopes see all that a refit finds, and
+        elsewhere perhaps half of it."""
+        return self.effort.promising * (2.0 if self.factory.leads else 1.0)
+
+    @property
     def offsets(self) -> tuple[str, ...]:
         """Sensor offsets that every fit estimates."""
         return tuple(offsets_of(self.campaign))

@@ -62,11 +62,7 @@ def screen_groups(models: Models, base: Model) -> tuple[list[Screened], list[Scr
     alone = {s.score.effect: s.score.likelihood_ratio for s in screened}
     groups = [g for g, members in w.groups.items() if set(members) <= set(alone)]
     joined = _by_secants(models, models.rerun((*base.effects, *groups)), base.fit, here, groups) if groups else []
-    more = (
-        s
-        for s in joined
-        if s.score.likelihood_ratio > models.effort.promising + max(alone[e] for e in w.members(s.score.effect))
-    )
+    more = (s for s in joined if s.score.likelihood_ratio > models.promising + max(alone[e] for e in w.members(s.score.effect)))
     return screened, sorted(more, key=lambda s: -s.score.likelihood_ratio)
 
 
@@ -209,10 +205,11 @@ def _one_by_one(
     return columns
 
 
-def shortlist(screened: Sequence[Screened], effort: Effort) -> list[Screened]:
+def shortlist(models: Models, screened: Sequence[Screened]) -> list[Screened]:
     """The best by expected fall, some more of those whose slopes say little, and whatever may do nearly as much as the leader
     or looks like it; not what is surely far too small to matter."""
-    hopeful = (s for s in screened if s.score.likelihood_ratio > effort.promising)
+    effort, leads = models.effort, models.factory.leads
+    hopeful = (s for s in screened if s.score.likelihood_ratio > models.promising)
     promising = [s for s in hopeful if s.nonlinear_candidate or not s.negligible]
     first, others = promising[: effort.shortlist], promising[effort.shortlist :]
     if not others:
@@ -222,7 +219,7 @@ def shortlist(screened: Sequence[Screened], effort: Effort) -> list[Screened]:
     (alike,) = cosines([leader], [s.score for s in others])
 
     def wanted(s: Screened, cosine: float) -> bool:
-        near = effort.halfway if s.linear else 1 / effort.beyond  # of a fall, as far as slopes tell
+        near = effort.halfway if s.linear or leads else 1 / effort.beyond  # of a fall, as far as slopes tell
         may = s.score.likelihood_ratio > near * leader.likelihood_ratio
         return s.score.effect in curved or may or cosine > effort.alike
 

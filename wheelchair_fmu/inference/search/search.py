@@ -32,10 +32,10 @@ def searched(
     `rival` is the deviance of another model to be compared with; for `odds` and `explained` see `Round`."""
     screened, joined = screen_groups(models, base) if among is None else (screen(models, base, among), [])
     candidates: list[Candidate] = []
-    least = max(least, models.effort.promising)
+    least = max(least, models.promising)
     leader, hope, tests = math.inf, least, len(screened) + len(joined)
     likely = [s for s in screened if _hopeful(models, s, len(screened), odds)]
-    for s in (*shortlist(likely, models.effort), *joined):
+    for s in (*shortlist(models, likely), *joined):
         c = candidate(models, base, s, tests, min(leader, rival), hope)
         if c is None:
             continue

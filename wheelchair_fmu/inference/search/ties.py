@@ -70,7 +70,7 @@ def beside(models: Models, effect: str, final: Model, before: Round | None, cali
         return None
     screened = screen(models, base)
     own = judge(models, without, as_known, effect, models.factory.parameters(effect), len(screened))
-    promising = shortlist([s for s in screened if s.score.effect != effect], models.effort)
+    promising = shortlist(models, [s for s in screened if s.score.effect != effect])
     tried = (candidate(models, base, s, len(screened), least=models.effort.halfway * fall) for s in promising)
     candidates = tuple(ranked([own, *(c for c in tried if c)]))
     bare, held, scores = (
