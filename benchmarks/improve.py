@@ -20,9 +20,8 @@ from typer.testing import CliRunner
 from wheelchair_fmu.cli.main import app
 from wheelchair_fmu.inference.policy import DEFAULT
 
-from .diagnosis.cases import Case
+from .diagnosis.cases import Case, Plan
 from .diagnosis.trial import written
-from .independent.hidden import OUTSIDE
 
 
 def improved(case: Case) -> tuple[str, list[dict[str, float | str]]]:
@@ -45,7 +44,7 @@ def main() -> None:
     table, there = Table(title=f"seed {chosen.seed}"), 0
     for heading in ("hidden", "times δ", "calibrated", "in the end", "steps", "last verdict"):
         table.add_column(heading)
-    cases = [Case("outside", (effect,), times, seed=chosen.seed) for effect in OUTSIDE for times in (1.0, 3.0)]
+    cases = [case for case in Plan([chosen.seed]).cases if case.kind == "outside"]
     for case in track(cases, "campaigns", console=Console(stderr=True)):
         verdict, ladder = improved(case)
         before, after = (f"{step['fit']:.3f} / {step['heldout']:.3f}" for step in (ladder[1], ladder[-1]))

@@ -94,6 +94,8 @@ def test_lasting_structure_is_no_noise(sampled):
     """What a wheel that drags leaves to a calibrated model, and what is left with the drag in."""
     before = ModelFactory(sampled.models.campaign, Variant()).likelihood()
     calibrated = before.evidence(sampled.models.campaign.fit, sampled.rounds[0].fit.values)
+    final = sampled.facts
+    assert DEFAULT.is_structured(calibrated.rms, calibrated.worst[0]) and not DEFAULT.is_structured(final.rms, final.worst)
     nothing = replace(sampled.facts, effects=(), powers={"gyro_bias": 0.9}, causes={"gyro_bias": "sensors"})
     nothing = replace(nothing, first=replace(sampled.rounds[0], candidates=(), groups=()))
     assert sampled.facts.lasts < DEFAULT.lasting and decide(nothing) == "adequate"

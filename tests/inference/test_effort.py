@@ -1,4 +1,4 @@
-"""What a search spares itself decides nothing."""
+"""What a search spares itself is to decide nothing."""
 
 from __future__ import annotations
 

@@ -56,6 +56,10 @@ def compared(
     Raises UsageError for a name that cannot be calibrated.
     """
     chair = chair.with_effects(measured.effects)  # for the FMU to have
+    records = [p.name for p in chair.parameters()]
+    for name in calibrate:
+        if name not in records:  # before anything is compiled or fitted
+            raise unknown("parameter", name, records)
     recordings = taken(condensed(measured), chair, say)
     fitted, told = _calibrated(recordings, chair, calibrate)
     values = {**chair.values, **fitted}
@@ -70,10 +74,7 @@ def _calibrated(recordings: Taken, chair: Variant, names: Sequence[str]) -> tupl
     if not names and not recordings.campaign.nuisance:
         return {}, ()
     likelihood = Likelihood(windows(recordings.campaign), chair, recordings.noise_model)
-    records = {p.name: p for p in likelihood.variant.parameters()}
     for name in names:
-        if name not in records:
-            raise unknown("parameter", name, records)
         if name not in likelihood.sensitivities.columns:
             raise UsageError(f"{name} cannot be calibrated; choose among {', '.join(likelihood.sensitivities.columns)}")
     wanted = [*names, *likelihood.offsets]  # sensors' offsets, where the campaign names them, are nobody's error

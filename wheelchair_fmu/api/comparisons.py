@@ -147,7 +147,7 @@ class Comparison:
             recorded.time,
             {ch: recorded.channels[ch] for ch in found.channels},
             {ch: found.predicted[:, i] for i, ch in enumerate(found.channels)},
-            {ch: self._compared.noise.get(ch, 0.0) * recorded.noise_share(ch) for ch in found.channels},
+            {ch: self._compared.noise[ch] * recorded.noise_share(ch) for ch in found.channels},
             units=UNIT_OF,
             offsets=offsets,
         )

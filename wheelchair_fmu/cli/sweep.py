@@ -99,11 +99,12 @@ def _job(plan: Plan, engine: str) -> Job:
     first = plan.chairs[0].variant()
     measured = condensed(read(plan.campaign, known_parameters(first.catalogue, first.choice)))
     plan = replace(plan, chairs=tuple(chair.with_effects(measured.effects) for chair in plan.chairs))
-    yardsticks = {}
+    yardsticks, notes = {}, list[str]()
     with console(stderr=True).status("reading the campaign"):
         for chair in plan.chairs:
             variant = chair.variant()
             recordings = taken(measured, variant)
+            notes += recordings.notes
             likelihood = Likelihood(recordings.campaign, variant, recordings.noise_model)
             found = likelihood.evidence(recordings.campaign.runs, variant.values, (), tune_start=TUNING)
             yardsticks[chair.label] = tuple(
@@ -116,4 +117,6 @@ def _job(plan: Plan, engine: str) -> Job:
                 )
                 for e in found.runs
             )
+    for note in dict.fromkeys(notes):
+        console(stderr=True).print(f"note: {note}")
     return Job(plan, engine, yardsticks, measured.name, measured.fingerprint)

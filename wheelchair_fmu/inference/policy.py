@@ -110,9 +110,10 @@ def _count(value: int, thorough: int, reason: str) -> int:
 
 @dataclass(frozen=True)
 class Effort:
-    """How much a search tries. None of these numbers decides: they leave out what could not be found, or would be found as well
-    in another way. `python -m benchmarks.effort` searches campaigns again without sparing any work, and counts the answers that
-    change. Falls are of −2 log likelihood, expected by slopes and secants or found by a refit."""
+    """How much a search tries. These numbers are to save work and to decide nothing: they leave out what could not be found,
+    or would be found as well in another way. `python -m benchmarks.effort` searches campaigns again without sparing any work,
+    and counts the answers that change all the same. Falls are of −2 log likelihood, as slopes and secants promise them or as a
+    refit finds them."""
 
     shortlist: int = _count(5, 12, "effects that are refitted in a round, by what slopes and secants promise of them")
     curved: int = _count(2, 6, "effects that slopes say little of, which are refitted beside these")

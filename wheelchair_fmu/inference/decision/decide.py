@@ -22,7 +22,7 @@ class Facts:
     Of what the last model leaves on fitted runs: after how many samples it is forgotten (`lasts`), its whitened RMS over all
     and the `worst` of one channel in one run; and what is left `ahead`, on those held out. `strained` are given values that are
     bent as far as they may be, `likely` the probability of what is more probably of a size of interest than not and not sure
-    enough to be named, `powers` those with which effects would have been seen, and `causes` theirs.
+    enough to be named, `powers` those with which effects would have been seen, where all hangs on that, and `causes` theirs.
     """
 
     effects: tuple[str, ...]

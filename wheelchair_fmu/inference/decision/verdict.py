@@ -263,14 +263,17 @@ def _concluded(
         # Where forces lead the runs, what lasts is theirs: whether anything is behind it is asked of them (see `Unexplained`).
         lasts=0.0 if models.factory.leads else correlation_time(base.evidence),
         rms=base.evidence.rms,
-        worst=max((rms for row in base.evidence.table().values() for rms in row.values()), default=0.0),
+        worst=base.evidence.worst[0],
         ahead=held,
         strained=tuple(strained),
         likely=likely,
-        powers={} if effects or proposal is not None else _powers(models, rounds[0]),
+        powers={},
         causes={e: record.cause for e, record in models.factory.catalogue.items()},
     )
     verdict = decide(facts, models.policy)
+    if verdict == "cannot_see":  # or adequate, if enough would have been seen, which nobody needs to know before
+        facts = replace(facts, powers=_powers(models, rounds[0]))
+        verdict = decide(facts, models.policy)
     if verdict == "outside" and ladder[-1].heldout > ladder[1].heldout:
         effects, ties, groups = (), (), []  # what foretells runs that were held out worse helps nobody
     heard = (*heard, *search.heard)

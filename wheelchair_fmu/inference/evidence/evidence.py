@@ -204,6 +204,12 @@ class Evidence:
         """Whitened RMS by run and channel."""
         return {e.run.name: e.rms for e in self.runs}
 
+    @property
+    def worst(self) -> tuple[float, str, str]:
+        """The largest whitened RMS of one channel in one run, with the run and the channel."""
+        every = ((rms, run, channel) for run, row in self.table().items() for channel, rms in row.items())
+        return max(every, default=(0.0, "", ""))
+
     def summary(self) -> Evidence:
         """See `RunEvidence.summary`."""
         return Evidence(tuple(e.summary() for e in self.runs), ())
@@ -225,3 +231,8 @@ def blocks_of(run: Run) -> list[slice]:
     """Where each block of a run is; the last is what is left."""
     length = max(1, round(BLOCK / float(np.median(np.diff(run.time)))))
     return [slice(i, i + length) for i in range(0, len(run.time), length)]
+
+
+def begins_of(*found: Evidence) -> dict[str, Begin]:
+    """By run, where evidence has found that it begins."""
+    return {e.run.name: e.begins for evidence in found for e in evidence.runs}

@@ -22,7 +22,7 @@ from ...errors import SimulationError
 from ...model.variant import Variant
 from ...quantities import Parameter
 from ..parallel import parallel_map
-from .evidence import Begin, Evidence, RunEvidence, followed
+from .evidence import Begin, Evidence, RunEvidence, begins_of, followed
 from .initial_state import CASTERS, prior_start, start_sd, starts_of, uncertain
 from .local import BaselineError, ClockError, Local, Marginal, felt, locals_of, rate_of, read
 from .noise_model import ALONG, FORCED, MOMENT, NoiseModel, disturbance, noise_of, pushes_of
@@ -415,26 +415,27 @@ class Likelihood:
 
     def with_noise_model(self, noise_model: NoiseModel) -> Likelihood:
         """The same likelihood with other noise; runs begin where they did."""
-        other = object.__new__(Likelihood)
-        other.__dict__ = {**self.__dict__, "noise_model": noise_model}
-        return other
+        return self._with(noise_model=noise_model)
 
     def begun(self, begins: Mapping[str, Begin]) -> Likelihood:
         """The same likelihood with these runs, by name, beginning there."""
-        other = object.__new__(Likelihood)
-        other.__dict__ = {**self.__dict__, "begins": {**self.begins, **begins}}
-        return other
+        return self._with(begins={**self.begins, **begins})
 
     def continued(self, *found: Evidence) -> Likelihood:
         """The same likelihood with runs that begin where evidence has found that they do."""
-        return self.begun({e.run.name: e.begins for evidence in found for e in evidence.runs})
+        return self.begun(begins_of(*found))
 
     def led(self, campaign: Campaign) -> Likelihood:
         """The same model and noise on other runs of the chair, each from where its first samples say, and linearised about the
         path on which forces that nobody recorded lead it, once its start is tuned."""
-        other = object.__new__(Likelihood)
-        other.__dict__ = {**self.__dict__, "campaign": campaign, "leads": True}
+        other = self._with(campaign=campaign, leads=True)
         return other.begun({r.name: Begin(other._prior(r)) for r in campaign.runs})
+
+    def _with(self, **changed: object) -> Likelihood:
+        """The same but for these attributes: what was compiled and recorded is shared."""
+        other = object.__new__(Likelihood)
+        other.__dict__ = {**self.__dict__, **changed}
+        return other
 
 
 def constant(local: Local, channels: Sequence[str], inputs: Sequence[str], n: int) -> Constant:

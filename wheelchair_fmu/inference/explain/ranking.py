@@ -163,8 +163,8 @@ def leftover_json(d: Diagnosis) -> dict[str, Any]:
         return {"p": 1.0, "where": None}
     best = terms[0]
     p = best.p if refitted else min(1.0, best.p * len(d.leftover.scores))
-    worst = max(((v, run, c) for run, row in d.leftover.fit.evidence.table().items() for c, v in row.items()))
-    out = {"p": p, "where": {"run": worst[1], "channel": worst[2], "rms": worst[0]}, "term": best.effect}
+    rms, run, channel = d.leftover.fit.evidence.worst
+    out = {"p": p, "where": {"run": run, "channel": channel, "rms": rms}, "term": best.effect}
     if d.proposal:
         out["proposal"] = {"term": best.effect, "estimate": float(best.estimate[0]), "se": finite(best.se[0])}
     return out

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from ..evidence.evidence import Begin, Evidence
+from ..evidence.evidence import Begin, Evidence, begins_of
 from ..evidence.noise_model import NoiseModel
 
 
@@ -26,4 +26,4 @@ class Setting:
 
     def continued(self, *found: Evidence) -> Setting:
         """With runs that begin where evidence has found that they do."""
-        return replace(self, begins={**self.begins, **{e.run.name: e.begins for evidence in found for e in evidence.runs}})
+        return replace(self, begins={**self.begins, **begins_of(*found)})
