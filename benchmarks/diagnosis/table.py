@@ -173,6 +173,7 @@ def summary(trials: Sequence[Trial], floor: Mapping[tuple[str, int], float]) -> 
         ("wheels that slip: said so, and nothing named", share(by.get("slipping", []), slipped), ""),
         ("pairs: both found", share(by.get("pair", []), all_named), ""),
         ("pairs: at least one found", share(by.get("pair", []), lambda t: bool(set(t["effects"]) & named(t))), ""),
+        ("a body that goes on after the push: named, be it as small", share(by.get("rider", []), all_named), ""),
         ("casters that swing by law: nothing said to be missing", share(still, lambda t: t["verdict"] in QUIET), ""),
         ("  hidden effect named", share(moved, all_named), ""),
         ("near-ties: hidden one in the tie", share(by.get("near-tie", []), all_named), "99 %"),
