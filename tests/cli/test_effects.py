@@ -98,7 +98,8 @@ def test_ones_own_effects_are_in_the_ranking_however_unlikely():
     ]
     rows[0] |= {"p": 0.0, "verdict": "cannot_see", "probability": 0.987}
     rows[1] |= {"p": 0.9, "verdict": "cannot_see"}
+    rows[3] |= {"one_form_of": "the motion of the rider's body"}
     columns = [list(c.cells) for c in _ranking({"ranking": rows}, {"e3", "e17"}).columns]
     assert columns[0] == [f"e{i}" for i in range(LIKELIEST)] + ["e17"]
     assert columns[4][:2] == ["0.99", ""]
-    assert columns[7][:3] == ["not chosen", "cannot see", "not needed"]
+    assert columns[7][:3] == ["not chosen", "cannot see", "not needed"] and columns[7][3] == "not needed in this form"

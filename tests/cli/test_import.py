@@ -41,7 +41,7 @@ def raw(tmp_path_factory):
 def made(raw, tmp_path_factory):
     out = tmp_path_factory.mktemp("made") / "campaign"
     sizes = ("--radius", lab.RADIUS, "--mass", 90, "--track", 0.56, "--wheelbase", 0.44, "--cm-ahead", 0.1)
-    return out, imported(raw, "-o", out, *sizes)
+    return out, imported(raw, "-o", out, *sizes, "--caster-trail", 0.05, "--wheel-inertia", 0.12)
 
 
 def test_a_folder_of_recordings_becomes_a_campaign(made):
@@ -50,6 +50,8 @@ def test_a_folder_of_recordings_becomes_a_campaign(made):
     assert {f.name for f in out.iterdir()} == {"campaign.toml", "preview.html", "preview.png", "runs"}
     content = tomllib.loads((out / "campaign.toml").read_text(encoding="utf-8"))
     assert content["chair"] == {"m": 90, "a": 0.34, "b": 0.1, "t_r": 0.56} and content["wheel"] == {"R": lab.RADIUS}
+    spin = pytest.approx(2 * 0.12 / lab.RADIUS**2, rel=1e-3)  # two wheels
+    assert content["effect"] == {"caster_trail": {"c": 0.05}, "wheel_inertia": {"m": spin}}
     assert content["nuisance"] == dict.fromkeys(("F_rl", "F_rr", "yaw_rate", "a_x", "a_y"), True)
     assert [run["role"] for run in content["run"]] == ["fit", "fit", "holdout"]
     for run in content["run"]:
@@ -92,6 +94,8 @@ def test_a_campaign_that_is_there_stays_unless_forced(raw, tmp_path):
     [
         (["--radius", "-1"], "no size of a wheelchair"),
         (["--wheelbase", "0.4", "--cm-ahead", "0.4"], "beyond the casters' pivots"),
+        (["--caster-trail", "5"], "no size of a wheelchair"),
+        (["--wheel-inertia", "12"], "no size of a wheelchair"),
         (["--axes", "ISO"], "no axes"),
         (["--holdout", "run9"], "no run 'run9'"),
     ],
@@ -99,6 +103,12 @@ def test_a_campaign_that_is_there_stays_unless_forced(raw, tmp_path):
 def test_what_cannot_be_meant_is_refused(raw, tmp_path, words, said):
     done = imported(raw, "-o", tmp_path / "c", *words)
     assert done.exit_code == 2 and said in done.output and not (tmp_path / "c").exists()
+
+
+def test_a_wheel_s_inertia_waits_for_its_radius(raw, tmp_path):
+    imported(raw / "run01_imu.csv", "-o", tmp_path / "c", "--axes", "ISO-8855", "--wheel-inertia", 0.12)
+    text = (tmp_path / "c" / "campaign.toml").read_text(encoding="utf-8")
+    assert "# wheel_inertia.m =   # 2 I/R2" in text and not tomllib.loads(text)["effect"]
 
 
 def test_a_misspelt_heading_is_said_by_import(raw, tmp_path):
@@ -117,8 +127,8 @@ def test_a_misspelt_heading_is_said_by_import(raw, tmp_path):
 def test_at_a_terminal_it_asks_what_no_signal_tells(raw, tmp_path, monkeypatch):
     monkeypatch.setattr("wheelchair_fmu.cli.import_._at_terminal", lambda: True)
     words = ["import", *map(str, sorted(raw.glob("run01*"))), "-o", str(tmp_path), "--track", "0.5"]
-    done = CliRunner().invoke(app, words, input="x\n88,5\n\n0,44\n0.1\n\n")
-    assert done.exit_code == 0 and "give a number" in done.output, done.output
+    done = CliRunner().invoke(app, words, input="x\n88,5\n\n0,44\n0.1\n\n5\n0.05\n\n")
+    assert done.exit_code == 0 and "give a number below 0.3" in done.output, done.output
     content = tomllib.loads((tmp_path / "campaign.toml").read_text(encoding="utf-8"))
     assert content["chair"] == {"m": 88.5, "a": 0.34, "b": 0.1, "t_r": 0.5} and content["wheel"] == {}
     assert "rider alone" not in done.output, "no marker is on a body"
@@ -133,7 +143,7 @@ def test_at_a_terminal_it_asks_for_the_wheel_and_the_unit_that_no_file_tells(tmp
         time, right = lab.seen(s, 100, 0.2, "wheel_speed_r")
         pd.DataFrame({"t [s]": time, "speed right": right / 0.3}).to_csv(tmp_path / f"run{i}_tacho.csv", index=False)
     words = ["import", str(tmp_path), "-o", str(tmp_path / "c"), "--mass", "90", "--radius", "0.3", "--track", "0.56"]
-    done = CliRunner().invoke(app, words, input="left\nkg\nrad/s\n\n\n\n")
+    done = CliRunner().invoke(app, words, input="left\nkg\nrad/s\n\n\n\n\n\n\n\n")
     assert done.exit_code == 0, done.output
     assert (
         "wheel: on which wheel is it" in done.output and "'kg' is no unit of it; give one such as m/s or rad/s" in done.output
@@ -142,7 +152,7 @@ def test_at_a_terminal_it_asks_for_the_wheel_and_the_unit_that_no_file_tells(tmp
     tacho, wheel = sorted(content["recording"], key=lambda one: one["device"])
     assert tacho["columns"]["wheel_speed_r"] == {"column": "speed right", "unit": "rad/s"}
     assert set(wheel["columns"]) >= {"F_rl", "wheel_angle_l"}
-    done = CliRunner().invoke(app, [*words, "--force"], input="\n\n\n\n\n")
+    done = CliRunner().invoke(app, [*words, "--force"], input="\n\n\n\n\n\n\n")
     assert "no name tells of which wheel" in done.output and "next: fill in what is open" in done.output
 
 

@@ -22,7 +22,7 @@ def test_what_a_search_puts_in_has_the_errors_that_add_and_compare_say(tmp_path)
     chair = Variant(catalogue={effect: bundled()[effect] for effect in ("trunk_motion", "gyro_bias")})
     found = diagnose(campaign, chair)
     assert found.included == ("trunk_motion",) and found.models.setting.noise_model.differs(NoiseModel(campaign.noise))
-    for here, there in zip(found.ladder, add(campaign, chair, "trunk_motion").ladder, strict=True):
+    for here, there in zip(found.ladder, add(campaign, chair, ["trunk_motion"]).ladder, strict=True):
         assert (here.name, here.fit, here.heldout) == (there.name, pytest.approx(there.fit), pytest.approx(there.heldout))
     better = compared(campaign, after(found, chair, campaign), (), lambda words: None)
     by_what_was_stated = Likelihood(campaign, chair.with_effects(found.included))

@@ -97,7 +97,7 @@ def test_a_missing_effect_and_a_poor_guess_are_no_wrong_column(sample):
 
 
 def test_who_adds_an_effect_is_told_as_well(sample):
-    better = add(wired(sample, yaw_rate=-1.0), Variant(), "rolling_resistance_asymmetry")
+    better = add(wired(sample, yaw_rate=-1.0), Variant(), ["rolling_resistance_asymmetry"])
     assert [n for n in better.notes if n.startswith("yaw_rate has the other sign")]
 
 

@@ -169,11 +169,13 @@ def test_files_of_a_lab_are_read_together_and_that_can_be_undone(client, tmp_pat
     before = upload(client, *files).json()["campaign"]
     assert client.post(f"{client.base}/jobs", json={"kind": "import", "mass": "heavy"}).status_code == 400
     sizes = {"mass": 90, "radius": lab.RADIUS, "track": 0.56, "wheelbase": 0.44, "cm_ahead": 0.1, "caster_track": 0.43}
+    sizes |= {"caster_trail": 0.05, "wheel_inertia": 0.12}
     client.post(f"{client.base}/jobs", json={"kind": "import", **sizes})
     wait_for(lambda: client.get(f"{client.base}/job").json()["state"] != "running")
     state = client.get(f"{client.base}/state").json()
     assert state["job"]["state"] == "done", state["job"]["lines"]
     assert state["campaign"]["chair"] == {"m": 90, "a": 0.34, "b": 0.1, "t_r": 0.56, "t_f": 0.43}
+    assert state["campaign"]["effect"]["caster_trail"] == {"c": 0.05} and "wheel_inertia" in state["campaign"]["effect"]
     assert {len(run["files"]) for run in state["campaign"]["run"]} == {2}
     assert not [f for f in state["faults"] if f["severity"] == "error"]
     assert len(state["history"]["steps"]) == 2 and state["history"]["steps"][1]["label"] == "files read anew"

@@ -236,8 +236,8 @@ class Diagnosis:
         """
         return dict(json.loads(json.dumps(self._told)))
 
-    def add(self, effect: str) -> Variant:
-        """Fit the chair again with one more effect, and return it; its `staircase` shows what that does.
+    def add(self, *effects: str) -> Variant:
+        """Fit the chair again with one more effect, or several, and return it; its `staircase` shows what that does.
 
         Raises UsageError for an unknown id, and Failure where such a chair cannot be simulated on these runs.
 
@@ -245,9 +245,10 @@ class Diagnosis:
         >>> round(better.values["effect.rolling_resistance_asymmetry.D"], 1), bool(better.staircase["heldout"].iloc[-1] < 1.05)
         (1.6, True)
         """
-        if effect not in self._chair.catalogue:
-            raise unknown("effect", effect, self._chair.catalogue)
-        better = improve.add(self._campaign, self._chair, effect, self._fixed)
+        for effect in effects:
+            if effect not in self._chair.catalogue:
+                raise unknown("effect", effect, self._chair.catalogue)
+        better = improve.add(self._campaign, self._chair, effects, self._fixed)
         return of_record(better.variant, steps(step.as_json() for step in better.ladder))
 
     def save(self, path: str | Path) -> Path:

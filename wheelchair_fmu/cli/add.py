@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ..errors import unknown
-from ..inference.decision.improve import add as add_effect
+from ..inference.decision.improve import add as add_effects
 from ..inference.estimation.statistics import standard_errors
 from ..report.words import value_text
 from .files import print_json
@@ -24,7 +24,10 @@ def register(app: typer.Typer) -> None:
 
 
 def add(
-    effect: Annotated[str, typer.Argument(metavar="ID", help="An effect, as `wheelchair effects list` names it.")],
+    ids: Annotated[
+        str,
+        typer.Argument(metavar="ID[,ID...]", help="An effect, as `wheelchair effects list` names it, or several by commas."),
+    ],
     campaign: Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="A folder with campaign.toml.")],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="TOML", help="The improved variant.")],
     settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Any FMI parameter.")] = None,
@@ -33,13 +36,14 @@ def add(
     as_json: Annotated[bool, typer.Option("--json", help="Print the staircase as JSON.")] = False,
     progress: Progress = False,
 ) -> None:
-    """Refit with one more effect, print and draw the staircase, and write the improved variant."""
-    known = catalogue(effects)
-    if effect not in known:
-        raise unknown("effect", effect, known)
+    """Refit with one more effect or several, print and draw the staircase, and write the improved variant."""
+    known, wanted = catalogue(effects), [name for one in ids.split(",") if (name := one.strip())]
+    for name in wanted or [ids]:
+        if name not in known:
+            raise unknown("effect", name, known)
     chair, measured, fixed = subject(campaign, variant, effects, settings)
     with working("calibrating", lines=progress) as say:
-        better = add_effect(measured, chair, effect, fixed, say)
+        better = add_effects(measured, chair, wanted, fixed, say)
     files = write_improved(output, better.variant, better.ladder)
     estimates = {
         name: value_text(better.fit.values[name], se, better.records[name].unit)

@@ -47,6 +47,9 @@ from .files import print_json
 from .group import Progress, console, working
 from .sync import show
 
+MOST_OF = {"radius": 1.0, "track": 2.0, "wheelbase": 2.0, "cm_ahead": 2.0, "caster_track": 2.0, "caster_trail": 0.3}
+MOST_OF |= {"wheel_inertia": 2.0}  # in the unit of `SIZES`, beyond which a size is no wheelchair's, but of another unit
+MOST_OF_ANY = 1000.0
 RUNS = "runs"  # the folder of a campaign in which the recordings lie
 
 
@@ -69,6 +72,12 @@ def import_(
         float | None, typer.Option(metavar="M", help="From the rear axle forward to the centre of mass of chair and rider.")
     ] = None,
     caster_track: Annotated[float | None, typer.Option(metavar="M", help="Of the casters' pivots.")] = None,
+    caster_trail: Annotated[
+        float | None, typer.Option(metavar="M", help="Of the casters, from the pivot back to where the caster stands.")
+    ] = None,
+    wheel_inertia: Annotated[
+        float | None, typer.Option(metavar="KG_M2", help="Moment of inertia of one rear wheel with its rim about the axle.")
+    ] = None,
     axes: Annotated[str, typer.Option(help="SAE-J670 or ISO-8855, where no signal tells.")] = "",
     holdout: Annotated[
         list[str] | None, typer.Option(metavar="RUN", help="A run to keep for checking; else the last fifth.")
@@ -80,7 +89,7 @@ def import_(
     progress: Progress = False,
 ) -> None:
     """Find out which file is which run and device, which column is what, and how the clocks stand; write a campaign of it."""
-    given = (mass, person, radius, track, wheelbase, cm_ahead, caster_track)
+    given = (mass, person, radius, track, wheelbase, cm_ahead, caster_track, caster_trail, wheel_inertia)
     _usable(output, axes, force, dict(zip(SIZES, given, strict=True)))
     with working("reading", lines=progress):
         found = find(files, radius)
@@ -132,8 +141,11 @@ def _usable(output: Path, axes: str, force: bool, sizes: Mapping[str, float | No
     if axes and axes not in AXES:
         raise UsageError(f"no axes {axes!r}; use {' or '.join(AXES)}")
     for name, value in sizes.items():
-        if value is not None and not 0 < value < 1000:
-            raise UsageError(f"--{name.replace('_', '-')} {value:g} is no size of a wheelchair; give it in kg or m")
+        most = MOST_OF.get(name, MOST_OF_ANY)
+        if value is not None and not 0 < value < most:
+            raise UsageError(
+                f"--{name.replace('_', '-')} {value:g} is no size of a wheelchair; give {SIZES[name]}, below {most:g}"
+            )
     wheelbase, ahead = sizes["wheelbase"], sizes["cm_ahead"]
     if wheelbase is not None and ahead is not None and ahead >= wheelbase:
         raise UsageError(
@@ -150,7 +162,9 @@ def _asked(wanted: Wanted, found: Found) -> Wanted:
     """What no signal can tell, from the person at the terminal; an empty answer leaves it open."""
     body = any(plan.body for plan in found.plans)
     asked = {name: words for name, words in SIZES.items() if getattr(wanted, name) is None and (body or name != "person")}
-    answers: dict[str, Any] = {name: answer for name, words in asked.items() if (answer := _number(words)) is not None}
+    answers: dict[str, Any] = {
+        name: answer for name, words in asked.items() if (answer := _number(words, _most(name))) is not None
+    }
     axes = wanted.axes
     if not axes and open_axes(found.plans):
         axes = {"right": AXES[0], "left": AXES[1]}.get(
@@ -188,15 +202,19 @@ def _unit(device: str, choice: Choice) -> Choice:
     return choice
 
 
-def _number(words: str) -> float | None:
+def _most(size: str) -> float:
+    return MOST_OF.get(size, MOST_OF_ANY)
+
+
+def _number(words: str, most: float) -> float | None:
     while True:
         answer = typer.prompt(f"{words} (empty: fill in later)", default="", show_default=False, err=True).strip()
         try:
-            if not answer or 0 < float(answer.replace(",", ".")) < 1000:
+            if not answer or 0 < float(answer.replace(",", ".")) < most:
                 return float(answer.replace(",", ".")) if answer else None
         except ValueError:
             pass  # asked again
-        console(stderr=True).print(f"{answer!r} is no such size; give a number")
+        console(stderr=True).print(f"{answer!r} is no such size; give a number below {most:g}")
 
 
 def _placed(found: Found, output: Path, link: bool) -> dict[str, dict[str, str]]:

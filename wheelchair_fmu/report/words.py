@@ -314,9 +314,12 @@ def probability_words(p: float) -> str:
 
 
 def verdict_words(row: Mapping[str, Any]) -> str:
-    """What became of an effect of the ranking. One that the data show was seen, even where others explain them better."""
-    seen = row["verdict"] == "cannot_see" and row["p"] < SEEN
-    return "not chosen" if seen else str(row["verdict"]).replace("_", " ")
+    """What became of an effect of the ranking. One that the data show was seen, even where others explain them better. Of a
+    cause with several forms the law is one."""
+    if row["verdict"] == "cannot_see" and row["p"] < SEEN:
+        return "not chosen"
+    words = str(row["verdict"]).replace("_", " ")
+    return f"{words} in this form" if row["verdict"] == "not needed" and row.get("one_form_of") else words
 
 
 def listed(names: Sequence[str], word: str) -> str:

@@ -9,6 +9,7 @@ import pytest
 
 from wheelchair_fmu.inference.decision.among_forces import FORCES
 from wheelchair_fmu.report.paper.folder import bibliography
+from wheelchair_fmu.report.paper.left_out import STOOD, left_out
 from wheelchair_fmu.report.paper.markup import cited
 from wheelchair_fmu.report.paper.methods import methods, tex
 
@@ -156,3 +157,27 @@ def test_priors_that_were_stated_and_values_that_were_not_given():
 
 def test_a_remark_is_pointed_at():
     assert "What was left out or found odd in the data is in `left_out.csv`." in methods(case_of(), 1)
+
+
+def test_what_was_used_of_the_runs_is_said_and_what_was_not_has_its_own_reason():
+    """Where forces lead the runs, these count from where the chair rolls; a run that stood in between is in two pieces."""
+    found = with_forces()
+    runs = found["final"]["runs"]
+    whole = runs.pop("coast-down")
+    middle = (whole["from"] + whole["to"]) / 2
+    half = {c: {**told, "readings": told["readings"] // 2, "used": told["used"]} for c, told in whole["channels"].items()}
+    half = {c: {**told, "used": None} for c, told in half.items()}
+    runs["coast-down"] = {**whole, "from": whole["from"] + 0.5, "to": middle, "channels": half}
+    runs["coast-down@9s"] = {**whole, "from": middle + 1.0, "channels": half}
+    case = case_of(found)
+    lost = [row for row in left_out(case).itertuples() if row.place == "coast-down"]
+    assert [row.why for row in lost] == [STOOD, STOOD] and [row.what[-9:] for row in lost] == ["(0.500 s)", "(1.000 s)"]
+    text = methods(case, 2)
+    assert re.search(r"Of these, [\d.]+ s of the [\d.]+ s fitted and [\d.]+ s of the [\d.]+ s held out count", text)
+    assert "Of these" not in methods(case_of(), 0)
+
+
+def test_values_to_be_measured_again_are_no_manoeuvre():
+    following = {"manoeuvre": "chair.I_z measured again", "repeats": 1, "gain": None, "shows": None}
+    found = calibrated("outside") | {"next_experiment": following}
+    assert "To be measured again: chair.I" in methods(case_of(found), 0)

@@ -44,6 +44,8 @@ class Wanted:
     wheelbase: float | None = None
     cm_ahead: float | None = None
     caster_track: float | None = None
+    caster_trail: float | None = None
+    wheel_inertia: float | None = None
     axes: str = ""
     holdout: Sequence[str] = ()
     at_rest: Mapping[str, bool] = field(default_factory=dict)
@@ -55,6 +57,11 @@ class Wanted:
         """How far the casters' pivots are ahead of the centre of mass."""
         return None if self.wheelbase is None or self.cm_ahead is None else self.wheelbase - self.cm_ahead
 
+    @property
+    def spin(self) -> float | None:
+        """The mass, kg, that two wheels' moment of inertia counts as, where the wheels' radius is known as well."""
+        return None if self.wheel_inertia is None or self.radius is None else 2 * self.wheel_inertia / self.radius**2
+
 
 SIZES = {  # of a chair, as they are asked for: what no file tells
     "mass": "mass of chair and rider, kg",
@@ -64,6 +71,8 @@ SIZES = {  # of a chair, as they are asked for: what no file tells
     "wheelbase": "from the rear axle to the casters' pivots, m",
     "cm_ahead": "from the rear axle forward to the centre of mass, m",
     "caster_track": "track of the casters' pivots, m",
+    "caster_trail": "trail of the casters, from the pivot back to where the caster stands, m",
+    "wheel_inertia": "moment of inertia of one rear wheel with its rim about the axle, kg m2",
 }
 CHAIR = (
     ("m", "mass", "chair and rider, kg"),
@@ -134,7 +143,19 @@ def _chair(wanted: Wanted) -> str:
         lines.append(_line(f"{key} = {value:g}", meaning) if value is not None else f"# {key} =   # {meaning}: fill in")
     meaning = "radius of the rear wheels with the person in the chair, m"
     radius = f"# R =   # {meaning}: fill in" if wanted.radius is None else _line(f"R = {wanted.radius:g}", meaning)
-    return "\n".join([*lines, "", "[wheel]", radius])
+    return "\n".join([*lines, "", "[wheel]", radius, *_effects(wanted)])
+
+
+def _effects(wanted: Wanted) -> Iterator[str]:
+    """What a protocol knows of the chair that the model has as an effect, so that nobody takes it for what is missing."""
+    lines = []
+    if wanted.caster_trail is not None:
+        lines.append(_line(f"caster_trail.c = {wanted.caster_trail:g}", "from the casters' pivots back to where they stand, m"))
+    if wanted.wheel_inertia is not None:
+        meaning = f"2 I/R2 of the rear wheels, kg, with I = {wanted.wheel_inertia:g} kg m2 of each"
+        lacking = f"# wheel_inertia.m =   # {meaning}: fill in"
+        lines.append(lacking if wanted.spin is None else _line(f"wheel_inertia.m = {wanted.spin:.4g}", meaning))
+    yield from ("", "[effect]", *lines) if lines else ()
 
 
 def _rider(plans: Sequence[Plan], wanted: Wanted) -> str:

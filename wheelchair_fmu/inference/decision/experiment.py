@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ...campaign import CHANNELS, Run
+from ...campaign import CHANNELS, Run, moving
 from ...errors import SimulationError
 from ..estimation.fit import Fit, Problem, prior_of
 from ..estimation.inverse import inverse
@@ -51,17 +51,17 @@ def separate(
     odds = []
     for experiment in among:
         try:
-            there, run = _imagined(likelihood, experiment, one)
-            evidence = there.evidence([run], other.values, other.names)
+            there, runs = _imagined(likelihood, experiment, one)
+            evidence = there.evidence(runs, other.values, other.names)
         except SimulationError:
             continue
         r, S = evidence.r, evidence.S
         g = S.T @ r
         towards = inverse(S.T @ S + inverse(other.covariance)) @ g  # as near as the second may come
-        odds.append((float(r @ r - g @ towards), experiment, there, run, towards))
+        odds.append((float(r @ r - g @ towards), experiment, there, runs, towards))
     if not odds:
         return None
-    gain, best, there, run, towards = max(odds, key=lambda o: o[0])
+    gain, best, there, runs, towards = max(odds, key=lambda o: o[0])
     repeats = int(np.ceil(needed / max(gain, 1e-9)))
     if repeats > MOST_REPEATS:
         return None
@@ -70,20 +70,23 @@ def separate(
         "separates": list(effects),
         "repeats": repeats,
         "why": f"one such run would favour the right one of the two by {gain:.0f} in −2 log likelihood; {needed:.0f} decide",
-        "shows": _shows(there, run, other, towards, effects),
+        "shows": _shows(there, runs, other, towards, effects),
     }
 
 
-def _shows(there: Likelihood, run: Run, other: Fit, towards: np.ndarray, effects: tuple[str, str]) -> dict[str, Any] | None:
+def _shows(
+    there: Likelihood, runs: Sequence[Run], other: Fit, towards: np.ndarray, effects: tuple[str, str]
+) -> dict[str, Any] | None:
     """What to look at: the channel in which the run's readings, by the first model, part most from what the second would have
     once it has been fitted to them, and both, in SI units, with the noise of one reading. None where that cannot be run."""
     problem = Problem(there, other.names)
     moved = {n: other.values[n] + float(d) for n, d in zip(other.names, towards, strict=True)}
     values = {**other.values, **problem.values(problem.inside(moved))}
     try:
-        (seen,) = there.evidence([run], values).runs
+        seen = max(there.evidence(runs, values).runs, key=lambda e: float(np.nansum(e.r**2)))
     except SimulationError:
         return None
+    run = seen.run
     channel = seen.channels[int(np.argmax(np.nansum(seen.r**2, axis=0)))]
     some = np.unique(np.linspace(0, len(run.time) - 1, DRAWN).astype(int))
     readings = (run.channels[channel], seen.predicted[:, seen.channels.index(channel)])
@@ -103,8 +106,8 @@ def reveal(models: Models, base: Fit, hidden: Sequence[str], among: Sequence[Exp
     best: tuple[int, Any, list[str], float] | None = None
     for experiment in among:
         try:
-            there, run = _imagined(likelihood, experiment, base)
-            e = there.evidence([run], base.values, [*base.names, *names])
+            there, runs = _imagined(likelihood, experiment, base)
+            e = there.evidence(runs, base.values, [*base.names, *names])
         except SimulationError:
             continue
         shown, weakest = _shown(models, e.S, base, prior_of(likelihood, base.names).slopes, effects, names)
@@ -140,8 +143,9 @@ def _shown(
     return shown, weakest
 
 
-def _imagined(likelihood: Likelihood, experiment: Experiment, model: Fit) -> tuple[Likelihood, Run]:
-    """The likelihood with an experiment's sensors, and the run as a fitted model would have it read, without noise."""
+def _imagined(likelihood: Likelihood, experiment: Experiment, model: Fit) -> tuple[Likelihood, Sequence[Run]]:
+    """The likelihood with an experiment's sensors, and the run as a fitted model would have it read, without noise. Forces
+    that nobody recorded, where they lead the runs, would act there as well; that run, too, is cut to where the chair rolls."""
     known = {**likelihood.variant.values, **likelihood.campaign.known}
     given = {**experiment.set, **{n: known.get(n, 0.0) + extra for n, extra in experiment.more.items()}}
     measured = {c for r in likelihood.campaign.runs for c in r.channels} | set(experiment.sensors)
@@ -168,6 +172,10 @@ def _imagined(likelihood: Likelihood, experiment: Experiment, model: Fit) -> tup
     p = likelihood.variant.vector({**known, **model.values, **given, **start})
     simulated = likelihood.sensitivities.run(experiment.time, w, p)
     places = {c.name: likelihood.sensitivities.sensors.index(c.fmu) for c in CHANNELS if c.name in measured}
-    noise_model = NoiseModel({**experiment.sensors, **likelihood.noise_model.sd}, likelihood.noise_model.ar)
-    there = likelihood.with_noise_model(noise_model).begun({blank.name: Begin(start)})
-    return there, replace(blank, channels={c: simulated.readings[:, i] for c, i in places.items()})
+    run = replace(blank, channels={c: simulated.readings[:, i] for c, i in places.items()})
+    sd, ar = {**experiment.sensors, **likelihood.noise_model.sd}, likelihood.noise_model.ar
+    if not likelihood.leads:
+        return likelihood.with_noise_model(NoiseModel(sd, ar)).begun({run.name: Begin(start)}), [run]
+    there = likelihood.with_noise_model(replace(likelihood.noise_model, sd=sd, shown={}))  # readings without noise show none
+    pieces = moving(replace(likelihood.campaign, runs=(run,))).runs
+    return there.begun({piece.name: Begin(there.expected_start(piece)) for piece in pieces}), pieces

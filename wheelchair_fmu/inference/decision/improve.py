@@ -20,6 +20,7 @@ from ..search.beginning import begin
 from ..search.refitting import candidate
 from ..search.screen import screen
 from ..search.selection import selection
+from .foretold import raised, worsened
 from .verdict import Diagnosis
 
 
@@ -36,19 +37,21 @@ class Improved:
 
 
 def add(
-    campaign: Campaign, chair: Variant, effect: str, fixed: Sequence[str] = (), say: Callable[[str], None] = quiet
+    campaign: Campaign, chair: Variant, effects: Sequence[str], fixed: Sequence[str] = (), say: Callable[[str], None] = quiet
 ) -> Improved:
-    """Refit the chair with one more effect; its own effects are estimated anew, and the noise with each, as a search does.
+    """Refit the chair with these effects, one after the other; its own are estimated anew, and the noise with each, as a search
+    does.
 
-    Raises Failure where the chair with the effect cannot be simulated on this campaign.
+    Raises Failure where the chair with an effect cannot be simulated on this campaign.
     """
     begun = begin(Models.of(ModelFactory(windows(campaign), chair, frozenset(fixed)), say=say))
     now = selection(begun, lambda ladder: None)
-    if effect not in now.effects:
+    for effect in (e for e in dict.fromkeys(effects) if e not in now.effects):
         say(f"refitting with {effect}")
         now = now.up_to(*_with(now.models, now.top, effect))
     models, fit = now.models, now.top.fit
-    notes = (*begun.heard(clocks(fit.evidence, now.top.heldout)), *models.setting.notes)
+    heard = (*begun.heard(clocks(fit.evidence, now.top.heldout)), *models.setting.notes)
+    notes = (*heard, *raised(now.ladder), *worsened(now.ladder))
     records = models.likelihood(now.effects).records
     return Improved(improved(chair, now.effects, fit, campaign), fit, records, now.ladder, notes)
 

@@ -16,7 +16,7 @@ from ...campaign import Campaign, windows
 from ...errors import SimulationError
 from ...model.stage import Effect
 from ...model.variant import Variant
-from ..estimation.calibration import Calibrated, calibration, doubts
+from ..estimation.calibration import Calibrated, calibration, doubts, of_the_body
 from ..estimation.fit import Fit
 from ..estimation.interval import interval_by_errors, profile_interval, widened
 from ..estimation.score import Score
@@ -355,7 +355,7 @@ def _notes(
     models, top, rounds = found.models, found.top, found.rounds
     thinned = (models.campaign.thinned,) if models.campaign.thinned else ()
     odd = unlike_the_others(top.fit.evidence, top.heldout)
-    doubtful = (*doubts(values), *(reliefs(rounds[-1], values) if proposal is None else ()))
+    doubtful = (*doubts(values), *of_the_body(values), *(reliefs(rounds[-1], values) if proposal is None else ()))
     beyond_limits = beyond(models.likelihood(found.effects), top.fit.evidence)
     large = tuple(other.words for other in instead_of_small(rounds[0])) if verdict == "small" else ()
     unsure = tuple(_unsure(e, p) for e, p in likely.items()) if verdict == "cannot_see" else ()

@@ -14,6 +14,7 @@ from .fit import REACH, Fit, Problem, sizes_an_effect
 from .statistics import finite, standard_errors
 
 DOUBTED = 2.0  # standard deviations of its prior by which a value is said to be off
+SCALE, OF_THE_BODY = "rider.scale", 0.1  # and the share by which that may be off before anybody is told
 CLOSE = 1e-3  # of a prior's standard deviation, or of a bound: as near as a fit comes to it
 
 
@@ -22,7 +23,7 @@ class Calibrated:
     """A value as fitted, with its standard error, beside what was given, `prior` ± `prior_sd` (inf: nothing known).
 
     A fit goes no further than `lower` and `upper`; it is `at_bound` where it would have gone on, `beyond` where that is as far
-    as a prior lets it go.
+    as a prior lets it go. What nobody has `given` is what chairs usually have.
     """
 
     record: Parameter
@@ -33,6 +34,7 @@ class Calibrated:
     at_bound: bool
     lower: float = -np.inf
     upper: float = np.inf
+    given: bool = True
 
     @property
     def off(self) -> float:
@@ -51,12 +53,11 @@ class Calibrated:
         unit = self.record.unit.behind
         value, prior, sd = _to_the_same_place(self.value, self.prior, self.prior_sd)
         told = f"{self.record.name} comes out at {value}{unit}"
-        known = f"usual {prior} ± {sd}{unit}" if self.record.adjusted else f"{prior} ± {sd}{unit} given"
+        known = f"{prior} ± {sd}{unit} given" if self.given else f"usual {prior} ± {sd}{unit}"
         given = f"{abs(self.off):.1f} standard deviations from the {known}"
         if self.beyond:
-            return (
-                f"{told}, {given}, where the search stops: the value given is wrong, or it stands in for what the model lacks"
-            )
+            wrong = "the value given is wrong" if self.given else "the chair is no usual one"
+            return f"{told}, {given}, where the search stops: {wrong}, or it stands in for what the model lacks"
         if self.at_bound:
             told = f"{self.record.name} comes out at {self.value:.3g}{unit}"  # as it may be far below what was known of it
             return f"{told}, at its bound: it stands in for what the model lacks, or the data say little of it"
@@ -92,7 +93,8 @@ def calibration(likelihood: Likelihood, found: Fit) -> list[Calibrated]:
         value, sd = found.values[name], float(problem.prior.sd[i])
         record, mean = likelihood.records[name], float(problem.prior.mean[i])
         stopped, reach = at_bound(record, value, mean, sd), (float(problem.lower[i]), float(problem.upper[i]))
-        out.append(Calibrated(record, value, errors[name], mean, sd, stopped, *reach))
+        given = name in likelihood.campaign.known or name in likelihood.variant.values or name in likelihood.campaign.priors
+        out.append(Calibrated(record, value, errors[name], mean, sd, stopped, *reach, given))
     return out
 
 
@@ -111,6 +113,16 @@ def at_bound(record: Parameter, value: float, prior: float, prior_sd: float) -> 
     near = CLOSE * (prior_sd if np.isfinite(prior_sd) else record.smallest_interesting or record.nominal or 1.0)
     inside = max(record.lower, prior - reach) + near < value < min(record.upper, prior + reach) - near
     return not inside and abs(value - prior) > near
+
+
+def of_the_body(found: Sequence[Calibrated]) -> list[str]:
+    """A sentence where the rider's body counts for more, or less, than was measured of it."""
+    return [
+        f"the rider's body counts {c.value:.2g} ± {c.se:.1g} times as much as was measured of it"
+        + ("; what was measured may be a part of what moves" if c.value > 1 else "")
+        for c in found
+        if c.record.name == SCALE and abs(c.value - 1) > max(DOUBTED * c.se, OF_THE_BODY)
+    ]
 
 
 def doubts(found: Sequence[Calibrated]) -> list[str]:

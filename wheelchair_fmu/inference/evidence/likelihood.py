@@ -65,7 +65,7 @@ class Likelihood:
         self.sensitivities = Sensitivities(self.variant, wanted if derives else (), driven(campaign).union(EXTERNAL))
         self.noise_model = noise_model or NoiseModel(campaign.noise)
         self.leads = leads
-        self.begins: Mapping[str, Begin] = {r.name: Begin(self._prior(r)) for r in campaign.runs}
+        self.begins: Mapping[str, Begin] = {r.name: Begin(self.expected_start(r)) for r in campaign.runs}
         self.offsets = offsets_of(campaign)
         offsets = (Parameter(name, BY_NAME[c].unit, f"offset of {c}") for name, c in self.offsets.items())
         self.records: dict[str, Parameter] = {p.name: p for p in (*self.variant.parameters(), *offsets)}
@@ -78,7 +78,8 @@ class Likelihood:
     def _uncertain(self, run: Run) -> dict[str, float]:
         return uncertain(run, self.start_names)
 
-    def _prior(self, run: Run) -> dict[str, float]:
+    def expected_start(self, run: Run) -> dict[str, float]:
+        """Where a run is expected to start before its readings are asked, by the start's parameters."""
         return prior_start(run, self.known(run), self.start_names, self.leads)
 
     def known(self, run: Run) -> dict[str, float]:
@@ -196,7 +197,7 @@ class Likelihood:
         """A run, started where its readings want it; one that is led, also where forces which nobody recorded lead it."""
         begins, names = self.begins[run.name], tuple(self._uncertain(run))
         known = {n: v for n, v in begins.start.items() if n in self.start_names or n not in CASTERS}
-        start = {**self._prior(run), **known}
+        start = {**self.expected_start(run), **known}
         at = np.array([start.get(n, 0.0) for n in names])
 
         def tuned(found: Evaluation) -> dict[str, float]:
@@ -261,7 +262,7 @@ class Likelihood:
 
     def _recorded(self, run: Run) -> Recording:
         channels, pushes = self._channels(run), self._pushes(run)
-        prior, sd = self._prior(run), start_sd(run, self.start_names)
+        prior, sd = self.expected_start(run), start_sd(run, self.start_names)
         constants = [constant(c, channels, self._inputs, len(run.time)) for c in locals_of(run)]
         return Recording(
             run.time,
@@ -334,7 +335,7 @@ class Likelihood:
     def _better_start(self, e: RunEvidence) -> dict[str, float]:
         """The start, and what else is uncertain of the run, given all readings: prior mean + P₀ S₀ᵀ r, to first order."""
         good = np.isfinite(e.r)
-        prior, sd = self._prior(e.run), e.uncertain
+        prior, sd = self.expected_start(e.run), e.uncertain
         step = np.array(list(sd.values())) ** 2 * (e.start_S[good].T @ e.r[good])
         return {n: prior.get(n, 0.0) + float(np.clip(s, -3 * sd[n], 3 * sd[n])) for n, s in zip(sd, step, strict=True)}
 
@@ -429,7 +430,7 @@ class Likelihood:
         """The same model and noise on other runs of the chair, each from where its first samples say, and linearised about the
         path on which forces that nobody recorded lead it, once its start is tuned."""
         other = self._with(campaign=campaign, leads=True)
-        return other.begun({r.name: Begin(other._prior(r)) for r in campaign.runs})
+        return other.begun({r.name: Begin(other.expected_start(r)) for r in campaign.runs})
 
     def _with(self, **changed: object) -> Likelihood:
         """The same but for these attributes: what was compiled and recorded is shared."""

@@ -117,7 +117,14 @@ def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dic
         "heldout_after": finite(c.heldout.rms) if c and c.heldout and c.heldout.runs else None,
         "rivals": [{**rival, **_odds(c, rival["effect"], r)} for rival in rivals],
         "verdict": _row_verdict(d, s, c),
+        "one_form_of": _cause(d, s.effect),
     }
+
+
+def _cause(d: Diagnosis, effect: str) -> str | None:
+    """Of what an effect is one form among several; None where the effect is its own cause."""
+    cause = d.models.factory.catalogue[effect].cause
+    return None if cause == effect else cause.partition(":")[0]
 
 
 def _estimate(d: Diagnosis, s: Score, c: Candidate | None) -> tuple[np.ndarray, np.ndarray]:

@@ -14,6 +14,7 @@ from ..evidence.limits import beyond_limits, in_words
 from .physical import ChannelError, pooled, run_errors
 
 BINS = 4
+DIGITS = 6  # after the point, in SI units, that a regime is told by
 
 
 @dataclass(frozen=True)
@@ -56,10 +57,11 @@ class Comparison:
         return float(np.sqrt(sum(np.nansum(one**2, dtype=float) for one in e) / count)) if count else float("nan")
 
     def excess_by(self, name: str) -> list[tuple[float, float, float]]:
-        """(from, to, share of the excess Σ(e² − 1)) over bins of a regime that hold equally many samples."""
+        """(from, to, share of the excess Σ(e² − 1)) over bins of a regime that hold equally many samples; none where it is the
+        same all along, but for rounding."""
         values = np.concatenate([r.regime[name] for r in self.runs])
         excess = np.concatenate([np.nansum(r.e**2 - 1, axis=1, dtype=float) for r in self.runs])
-        edges = np.unique(np.quantile(values, np.linspace(0, 1, BINS + 1)))
+        edges = np.unique(np.round(np.quantile(values, np.linspace(0, 1, BINS + 1)), DIGITS))
         if len(edges) < 2:
             return []
         place = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)

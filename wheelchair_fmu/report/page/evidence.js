@@ -68,7 +68,7 @@ function became(row, parameters, campaign) {
     return diagnosis.effects.length || diagnosis.leftover?.proposal ? "another explains it better" : "not chosen";
   }
   if (diagnosis.verdict === "outside" && row.verdict === "missing") return "helps, does not suffice";
-  return VERDICTS[row.verdict] ?? row.verdict;
+  return row.verdict === "not needed" && row.one_form_of ? `${VERDICTS[row.verdict]} in this form` : VERDICTS[row.verdict] ?? row.verdict;
 }
 
 /** Does a size stand where a fit may go no further? */

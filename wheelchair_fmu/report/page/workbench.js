@@ -21,11 +21,12 @@ const MOSTLY = ["F_x", "F_y", "M_z"]; // what an effect of one's own adds to, as
 /** What no file tells of a chair, where campaign.toml has it as it was given. */
 const SIZES = {
   mass: (c) => c.chair?.m, person: () => null, radius: (c) => c.wheel?.R, track: (c) => c.chair?.t_r, cm_ahead: (c) => c.chair?.b, caster_track: (c) => c.chair?.t_f,
+  caster_trail: (c) => c.effect?.caster_trail?.c, wheel_inertia: (c) => (Number.isFinite(c.effect?.wheel_inertia?.m) && Number.isFinite(c.wheel?.R) ? Number((c.effect.wheel_inertia.m * c.wheel.R ** 2 / 2).toFixed(6)) : undefined),
   wheelbase: (c) => (Number.isFinite(c.chair?.a) && Number.isFinite(c.chair?.b) ? Number((c.chair.a + c.chair.b).toFixed(6)) : undefined),
 };
 const PLACES = { m: "the mass of chair and rider", t_r: "how far the rear wheels are apart", a: "how far the casters' pivots are ahead of the centre of mass", b: "how far the rear axle is behind it", t_f: "how far the casters' pivots are apart" };
 
-const TIMES = { kg: { kg: 1, g: 0.001, lb: 0.45359237 }, m: { m: 1, cm: 0.01, mm: 0.001, in: 0.0254 } }; // units that a size may have behind it
+const TIMES = { kg: { kg: 1, g: 0.001, lb: 0.45359237 }, m: { m: 1, cm: 0.01, mm: 0.001, in: 0.0254 }, "kg m²": { "kg m²": 1, "kg m2": 1 } }; // units that a size may have behind it
 
 class Refused extends Error {}
 
@@ -539,7 +540,7 @@ function follow(field, value) {
 
 /** What a field of a size says, null where it is empty; NaN where it is no number. */
 function sizeOf(field) {
-  const [, number, unit] = field.value.trim().match(/^(.*?)\s*([a-z]*)$/i);
+  const [, number, unit] = field.value.trim().match(/^(.*?)\s*(kg m[2²]|[a-z]*)$/i);
   if (!number && !unit) return null;
   const times = unit ? TIMES[field.dataset.unit][unit.toLowerCase()] ?? NaN : 1;
   return Number((decimal(number) * times).toPrecision(12));

@@ -8,7 +8,7 @@ from functools import cached_property
 from math import nan
 from typing import Any
 
-from ...campaign import Campaign
+from ...campaign import Campaign, Run
 from ...errors import Failure
 from ...inference.decision.among_forces import FORCES
 from ...model.generic import library
@@ -18,6 +18,7 @@ NORMAL = 1.96  # standard errors either way, where no profile of the likelihood 
 PROFILE, BY_ERRORS = "profile likelihood", "standard errors"
 NEEDED = ("final", "fingerprint", "made_by")  # keys of a diagnosis that earlier versions did not write
 GENERIC = "generic_"
+PIECE = "@"  # stands between the name of a run and when a piece of it begins
 EFFECT, OFFSET = "effect.", "offset."
 
 
@@ -73,6 +74,19 @@ class Case:
     def with_forces(self) -> bool:
         """Were forces that nobody recorded among the noise in the end?"""
         return any(s["step"] == FORCES for s in self.ladder)
+
+    @property
+    def pushed(self) -> bool:
+        """Was any push recorded?"""
+        return any(v.any() for run in self.campaign.runs for name, v in run.inputs.items() if name.startswith("push."))
+
+    def pieces(self, run: Run) -> list[Mapping[str, Any]]:
+        """What of a run the last model was compared with: all of it, a part, or several where the chair stood in between."""
+        return [told for name, told in self.final["runs"].items() if name == run.name or name.startswith(f"{run.name}{PIECE}")]
+
+    def used(self, run: Run) -> list[tuple[float, float]]:
+        """From when to when (s) that is."""
+        return sorted((piece["from"], piece["to"]) for piece in self.pieces(run))
 
     @cached_property
     def effects(self) -> tuple[str, ...]:

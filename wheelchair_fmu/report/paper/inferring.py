@@ -51,10 +51,11 @@ def model(case: Case) -> str:
 
 def fitting(case: Case) -> str:
     """How the values were found, and what was allowed for without being estimated."""
+    driven = "The recorded pushes drove a simulation of each run" if case.pushed else "Each run was simulated from its start"
     told = [
         "All values were estimated together by maximum a posteriori on the fitted runs.",
-        "The recorded pushes drove a simulation of each run, and a Kalman filter linearised along it turned readings less "
-        f"simulated readings into innovations, with {_process(case)} {cite('Astrom1980')}.",
+        f"{driven}, and a Kalman filter linearised along it turned readings less simulated readings into innovations, with "
+        f"{_process(case)} {cite('Astrom1980')}.",
         "The sum of their squares, of the logarithms of their variances and of the squared deviations from priors in standard "
         "deviations was minimised by Gauss–Newton steps within bounds.",
         *_nuisances(case),

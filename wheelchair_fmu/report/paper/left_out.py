@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import astuple, dataclass, fields
 
 import pandas as pd
 
 from ...campaign import Run
+from ...campaign.recorded import PUSHES_CLOCK
 from ...faults import Fault
 from .case import Case
 
@@ -15,6 +16,7 @@ LEFT_OUT = "left out"  # as checks and notes say it
 RESTS = "an acceleration where the chair comes to rest is foretold by no slope, and its reading says nothing"
 UNKNOWN = "it is not what its name says, or was not measured in time"
 PUSHES = "the pushes that the chair felt then are not in the record, once it is read at the time of the readings"
+STOOD = "the chair stood or hardly rolled, so that forces which nobody recorded may have moved it or not"
 SHIFT = 1e-3  # s, less than which no run is called shorter
 
 
@@ -43,15 +45,16 @@ def _of_check(fault: Fault) -> Remark:
 
 def _channels(case: Case) -> Iterator[Remark]:
     """Channels that the diagnosis did not use, or of which it did not use every reading."""
-    used = case.final["runs"]
     for run in case.campaign.runs:
-        kept = used.get(run.name, {}).get("channels", {})
+        pieces = [piece["channels"] for piece in case.pieces(run)]
         for channel in run.channels:
-            if channel not in kept:
+            kept = [piece[channel] for piece in pieces if channel in piece]
+            readings = sum(one["readings"] for one in kept)
+            missing = sum(one["readings"] - one["used"] for one in kept if one["used"] is not None)
+            if not kept:
                 yield Remark(run.name, channel, _reason(case, channel, run), "diagnosis", True)
-            elif (n := kept[channel]["used"]) is not None and n < kept[channel]["readings"]:
-                readings = kept[channel]["readings"]
-                yield Remark(run.name, f"{channel}: {readings - n} of {readings} readings", RESTS, "diagnosis", True)
+            elif missing:
+                yield Remark(run.name, f"{channel}: {missing} of {readings} readings", RESTS, "diagnosis", True)
 
 
 def _reason(case: Case, channel: str, run: Run) -> str:
@@ -60,19 +63,19 @@ def _reason(case: Case, channel: str, run: Run) -> str:
 
 
 def _shorter(case: Case) -> Iterator[Remark]:
-    """What a run lost when its pushes were read at another time."""
+    """What a run lost where its chair did not roll, or when its pushes were read at another time."""
     for run in case.campaign.runs:
-        used = case.final["runs"].get(run.name)
-        for lost, first, last in () if used is None else _lost(run, used["from"], used["to"]):
-            yield Remark(run.name, f"{first:.3f} to {last:.3f} s ({lost:.3f} s)", PUSHES, "diagnosis", True)
+        late = abs(case.told.get("sync", {}).get(run.name, {}).get(PUSHES_CLOCK, {}).get("offset", 0.0))
+        for first, last in _gaps(float(run.time[0]), float(run.time[-1]), case.used(run)):
+            why = STOOD if case.with_forces and last - first > late + SHIFT else PUSHES
+            yield Remark(run.name, f"{first:.3f} to {last:.3f} s ({last - first:.3f} s)", why, "diagnosis", True)
 
 
-def _lost(run: Run, first: float, last: float) -> Iterator[tuple[float, float, float]]:
-    begins, ends = float(run.time[0]), float(run.time[-1])
-    if first - begins > SHIFT:
-        yield first - begins, begins, first
-    if ends - last > SHIFT:
-        yield ends - last, last, ends
+def _gaps(begins: float, ends: float, used: Sequence[tuple[float, float]]) -> Iterator[tuple[float, float]]:
+    """From when to when a run was not used, of which these stretches were."""
+    if used:
+        edges = [begins, *(edge for stretch in used for edge in stretch), ends]
+        yield from ((a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if b - a > SHIFT)
 
 
 def _notes(case: Case, said: set[str]) -> Iterator[Remark]:

@@ -14,6 +14,8 @@ from .case import EFFECT, OFFSET, Case
 from .markup import code, meaning, plain
 from .numbers import amount, capital, number, read_out, seconds, several
 
+ROLES = ("fitted", "held out")
+LOST = 0.1  # s, less than which nobody misses
 FEW = 12  # runs that are named one by one
 
 
@@ -80,10 +82,27 @@ def runs(case: Case) -> str:
     said.append(f"{_several(fitted, thing)} fitted{_named(fitted)}.")
     if held:
         said.append(f"{_several(held, thing)} held out{_named(held)}.")
-        said.append("No value was fitted to these, but an effect had to predict them to be chosen.")
+        them = "this one" if len(held) == 1 else "these"
+        said.append(
+            f"No value was fitted to {them}, but an effect had to predict {'it' if len(held) == 1 else 'them'} to be chosen."
+        )
     else:
         said.append("No run was held out, so all errors below are those of fitted runs.")
-    return " ".join(said)
+    return " ".join([*said, *_used(case)])
+
+
+def _used(case: Case) -> Iterator[str]:
+    """How much of the runs counts, where that is not all of what was recorded."""
+    shares = [(_used_of(case, some), _duration(some)) for some in (case.campaign.fit, case.campaign.holdout) if some]
+    if any(whole - used > LOST for used, whole in shares):
+        amounts = [
+            f"{seconds(used)} of the {seconds(whole)} {what}" for (used, whole), what in zip(shares, ROLES, strict=False)
+        ]
+        yield f"Of these, {listed(amounts, 'and')} count; what was left out, and why, is in {code('left_out.csv')}."
+
+
+def _used_of(case: Case, some: tuple[Run, ...]) -> float:
+    return sum(last - first for run in some for first, last in case.used(run))
 
 
 def _several(some: tuple[Run, ...], thing: str) -> str:

@@ -9,7 +9,7 @@ from ...campaign.channels import CHANNEL_NAMES
 from ...inference.estimation.calibration import DOUBTED
 from ...inference.policy import DEFAULT
 from ..told import NAMED, Told, near_rivals
-from ..words import listed, sentence, title_of
+from ..words import AGAIN, listed, sentence, title_of
 from .case import EFFECT, PROFILE, Case, interval
 from .markup import cite, code, meaning, plain, symbols
 from .numbers import amount, capital, chance, ends, read_out, several
@@ -45,7 +45,7 @@ def _effect(case: Case, effect: str) -> str:
         return f"The last model has in it the generic term that explains most, {code(effect)}: {sizes}."
     done = {
         "effect found": "was added to the model",
-        "effect that helps": "was added to the model because other effects are found only beside it",
+        "effect that helps": "was added to the model because that makes the runs likelier, though the verdict does not name it",
         "effect from the start": "was in the model from the start",
     }[kind]
     return f"{capital(symbols(title_of(effect, case.titles)))} ({code(effect)}) {done}: {sizes}.{_tied(case, effect)}"
@@ -75,8 +75,9 @@ def fall(case: Case) -> str:
     which = "runs held out" if case.held else "the fitted runs"
     names = [_step(case, s) for s in steps]
     figures = [f"{s[case.key]:.2f} {name}" for s, name in zip(steps, names, strict=True)]
+    known = "the pushes of the run and " if case.pushed else ""
     told = [
-        "Errors are readings less a simulation that knows the pushes of the run and where it started; whitened, they are "
+        f"Errors are readings less a simulation that knows {known}where the run started; whitened, they are "
         "divided by what the noise alone would give, so that 1 is the noise floor.",
         f"The whitened RMS error on {which} was {listed(figures, 'and')}.",
         f"In the units of the instruments, the RMS errors on {which} {listed(names, 'and')} were, in this order, "
@@ -164,7 +165,9 @@ def _rivals(case: Case) -> Iterator[str]:
 
 def _next(case: Case) -> Iterator[str]:
     following = case.told.get("next_experiment")
-    if following:
+    if following and following["manoeuvre"].endswith(AGAIN):
+        yield f"To be measured again: {plain(following['manoeuvre'].removesuffix(AGAIN))}."
+    elif following:
         times = "" if following["repeats"] == 1 else f", {following['repeats']} times"
         yield f"To be measured next: {plain(following['manoeuvre'])}{times}."
 
