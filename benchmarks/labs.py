@@ -1,4 +1,5 @@
-"""Lab folders from raw files to the verdict, beside what was hidden: `python -m benchmarks.labs [LAB ...] [--drawn SEED ...]`.
+"""Lab folders from raw files to the verdict, beside what was hidden: `python -m benchmarks.labs [LAB ...] [--drawn SEED ...]
+[--casters]`.
 
 A number after `--drawn` is a lab that benchmarks/independent/labs.py draws. Each is imported as docs/lab.md does it, with the
 lines of its protocol that no file holds, and diagnosed. Printed is what is said, and how far off: clocks and baselines in
@@ -15,7 +16,7 @@ import re
 import tempfile
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +42,7 @@ GIVEN = {  # by the protocols; and where the sensor sits
     "lab-01": (95, 0.307, 0.55, 0.405, 0.12, 0.42),
     "lab-02": (82, 0.306, 0.57, 0.41, 0.16, 0.45),
 }
+CASTERS = {"--caster-trail": 0.05, "--wheel-inertia": 0.12}  # which the protocols have as well
 AT = {"lab-01": "[0.09, 0.04]", "lab-02": "[-0.22, 0.0]"}
 GRAVITY = 9.81
 OF_THE_BODY = re.compile(r"^\[rider\]\n(?:.+\n)*|, sternum = [^}]*(?= \})", re.MULTILINE)  # lines and words of a campaign
@@ -90,9 +92,9 @@ def imported(lab: Lab, out: Path, filmed: bool = True) -> Path:
     return out
 
 
-def truths(hidden: Mapping[str, Any]) -> dict[str, float]:
-    """By parameter, what was hidden. The model's wheels have no spin, which counts as mass and as yaw inertia there."""
-    spin = 2 * hidden["wheel_inertia_each_kgm2"] / hidden["wheel_radius"] ** 2
+def truths(hidden: Mapping[str, Any], spinning: bool = False) -> dict[str, float]:
+    """By parameter, what was hidden. Of wheels that are not `spinning` in the model the spin counts as mass and yaw inertia."""
+    spin = 0.0 if spinning else 2 * hidden["wheel_inertia_each_kgm2"] / hidden["wheel_radius"] ** 2
     found = {f"chair.{name}": hidden[name] for name in ("a", "b", "t_r")}
     found |= {f"resistance.{name}": hidden[name] for name in ("f_r", "f_f")}
     found |= {"tyre.C_lambda": hidden["C_lambda"], "chair.m": hidden["m"] + spin}
@@ -134,9 +136,9 @@ def row(answer: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     floors, last = answer["floor_of_the_held_out_runs"], told["physical"]
     counts = inside(d)
     within, there_are = (sum(one) for one in zip(*counts.values(), strict=True))
-    z = dict(off(told, folder, answer["runs"]))
+    z, true = dict(off(told, folder, answer["runs"])), truths(hidden, "effect.wheel_inertia.m" in campaign.known)
     floor = GRAVITY * hidden["floor_slope_rms"] * hidden["m"]
-    known = {p["name"] for p in parameters if p["interval"]} & truths(hidden).keys()
+    known = {p["name"] for p in parameters if p["interval"]} & true.keys()
     return {
         "verdict": told["verdict"],
         "named": [*dict.fromkeys((*told["effects"], *(e for tie in told["ties"] for e in tie)))],
@@ -153,7 +155,7 @@ def row(answer: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         "body": told["disturbance"]["body"],
         "inside": {"all": within / there_are, **{c: a / b for c, (a, b) in counts.items()}},
         "intervals": len(known),
-        "missed": list(missed(parameters, truths(hidden))),
+        "missed": list(missed(parameters, true)),
         "parameters": parameters,
         "seconds": told["seconds"],
     }
@@ -219,11 +221,14 @@ def main() -> None:
     )
     parser.add_argument("--measurements", type=Path, default=MEASUREMENTS, help="the folder with the labs and their answers")
     parser.add_argument("--unfilmed", action="store_true", help="leave out markers of the rider's body")
+    parser.add_argument("--casters", action="store_true", help="give the casters' trail and the wheels' inertia as well")
     parser.add_argument("--out", type=Path, default=Path("out/labs"), help="what was found is kept here")
     chosen = parser.parse_args()
     chosen.out.mkdir(parents=True, exist_ok=True)
     for name in chosen.labs or ([] if chosen.drawn else GIVEN):
-        told(name, lambda _, name=name: recorded(chosen.measurements, name), chosen.out, not chosen.unfilmed)
+        lab = recorded(chosen.measurements, name)
+        lab = replace(lab, sizes={**lab.sizes, **(CASTERS if chosen.casters else {})})
+        told(name, lambda _, lab=lab: lab, chosen.out, not chosen.unfilmed)
     for seed in chosen.drawn:
         told(f"drawn-{seed}", lambda raw, seed=seed: drawn(raw, seed), chosen.out, not chosen.unfilmed)
 

@@ -17,7 +17,7 @@ from wheelchair_fmu.report.advice import INSPECT, inspect, inspect_term
 from wheelchair_fmu.report.markup import cards_html, screens_html
 from wheelchair_fmu.report.tale import story_of, texts
 from wheelchair_fmu.report.told import Told, actions, exceeds, near_rivals
-from wheelchair_fmu.report.words import headline, in_full, needed, probability_words
+from wheelchair_fmu.report.words import headline, in_full, needed, probability_words, verdict_words
 
 EFFECTS = {**bundled(), **library()}
 TITLES = {name: e.title for name, e in bundled().items()}
@@ -228,6 +228,18 @@ def test_what_is_in_the_model_and_too_small_to_matter_is_told():
     )  # said once
     answer = next(c["answer"] for c in screens[1]["choices"] if c["effect"] == LEAN)
     assert answer.startswith("It is in the model, at ") and "The error" not in answer
+
+
+def test_what_is_in_the_model_and_may_be_large_is_not_called_too_small():
+    """An effect that helps, at 2.9 times the size that matters and as uncertain as that, was called "too small to matter"."""
+    unsure = [{**r, "verdict": "cannot_see", "in_model": True} if r["effect"] == LEAN else r for r in SAMPLE["ranking"]]
+    ladder = [*SAMPLE["ladder"][:2], {**SAMPLE["ladder"][2], "step": f"+{LEAN}"}, SAMPLE["ladder"][2]]
+    story = tale(told("missing", [DRAG], ranking=unsure, ladder=ladder))
+    said = " of a size that these runs leave open."
+    assert story.cards[1]["lines"][0].endswith(f"with rear wheels that lean put in as well,{said}")
+    answer = next(c["answer"] for c in story.screens[1]["choices"] if c["effect"] == LEAN)
+    assert answer.startswith("It is in the model, at ") and answer.endswith("which these runs leave open.")
+    assert verdict_words({"verdict": "cannot_see", "p": 0.01, "in_model": True}) == "helps, size unsure"
 
 
 def test_centre_of_mass_is_written_in_full():

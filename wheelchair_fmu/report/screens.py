@@ -120,6 +120,8 @@ def _answer(t: Told, effect: str) -> str:
         return (
             f"It is in the model, at {multiple_words(t, effect)} the size that would matter: too little to be what is missing."
         )
+    if effect in t.unsurely_in:
+        return f"It is in the model, at {multiple_words(t, effect)} the size that would matter, which these runs leave open."
     comes = t.error(effect)
     error = "" if comes is None else f" {_moves(t, comes)}{_with(t, effect)}."
     if effect in t.found:
@@ -257,8 +259,8 @@ def _likeliest(t: Told) -> dict[str, Any]:
 
 def _as_well(t: Told) -> list[str]:
     """What the last step has in it beside what was found."""
-    names = [t.title(e) for e in t.slightly_in]
-    return [f"In the model as well, at a size too small to matter: {listed(names, 'and')}."] if names else []
+    sizes = ((t.slightly_in, "at a size too small to matter"), (t.unsurely_in, "at a size that these runs leave open"))
+    return [f"In the model as well, {size}: {listed([t.title(e) for e in names], 'and')}." for names, size in sizes if names]
 
 
 def _plain(row: Mapping[str, Any]) -> float:
@@ -349,7 +351,7 @@ def _beside_it(t: Told) -> list[str]:
     tried = [
         r
         for r in t.diagnosis["ranking"]
-        if r["effect"] in t.titles and r["effect"] not in (*t.found, *t.slightly_in) and r["values"]
+        if r["effect"] in t.titles and r["effect"] not in (*t.found, *t.slightly_in, *t.unsurely_in) and r["values"]
     ]
     idle = [r["effect"] for r in tried if not t.alone(r["effect"]) and t.error(r["effect"]) is not None]
     if t.slight or not idle or any(t.rows[e]["heldout_before"] - t.rows[e]["heldout_after"] > STILL for e in idle):

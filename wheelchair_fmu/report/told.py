@@ -142,8 +142,16 @@ class Told:
     @property
     def slightly_in(self) -> list[str]:
         """What the search put into the model beside what was found, and which is too small there to matter."""
+        return self._helping("small")
+
+    @property
+    def unsurely_in(self) -> list[str]:
+        """The same of what may be of any size."""
+        return self._helping("cannot_see")
+
+    def _helping(self, verdict: str) -> list[str]:
         steps = [s["step"].removeprefix("+") for s in self.diagnosis["ladder"] if s["step"].startswith("+")]
-        return [e for e in steps if e in self.rows and e not in self.found and self.rows[e]["verdict"] == "small"]
+        return [e for e in steps if e in self.rows and e not in self.found and self.rows[e]["verdict"] == verdict]
 
     def title(self, effect: str) -> str:
         return title_of(effect, self.titles)
@@ -202,8 +210,9 @@ def fall_words(t: Told) -> str:
 
 def _beside_words(t: Told) -> str:
     """What else is in the model at the end: a fall is not the work of what was found alone."""
-    slight = [t.title(e) for e in t.slightly_in] if t.found else []
-    return f", with {listed(slight, 'and')} put in as well, too little of it to matter" if slight else ""
+    some = ((t.slightly_in, "too little of it to matter"), (t.unsurely_in, "of a size that these runs leave open"))
+    told = [f"with {listed([t.title(e) for e in which], 'and')} put in as well, {size}" for which, size in some if which]
+    return "".join(f", {words}" for words in told) if t.found else ""
 
 
 def left_words(t: Told) -> list[str]:

@@ -315,7 +315,9 @@ def probability_words(p: float) -> str:
 
 def verdict_words(row: Mapping[str, Any]) -> str:
     """What became of an effect of the ranking. One that the data show was seen, even where others explain them better. Of a
-    cause with several forms the law is one."""
+    cause with several forms the law is one. What only helps the model may be of any size."""
+    if row["verdict"] == "cannot_see" and row.get("in_model"):
+        return "helps, size unsure"
     if row["verdict"] == "cannot_see" and row["p"] < SEEN:
         return "not chosen"
     words = str(row["verdict"]).replace("_", " ")

@@ -172,7 +172,8 @@ def _imagined(likelihood: Likelihood, experiment: Experiment, model: Fit) -> tup
     p = likelihood.variant.vector({**known, **model.values, **given, **start})
     simulated = likelihood.sensitivities.run(experiment.time, w, p)
     places = {c.name: likelihood.sensitivities.sensors.index(c.fmu) for c in CHANNELS if c.name in measured}
-    run = replace(blank, channels={c: simulated.readings[:, i] for c, i in places.items()})
+    offsets = {c: model.values.get(name, 0.0) for name, c in likelihood.offsets.items()}  # of sensors that would be there again
+    run = replace(blank, channels={c: simulated.readings[:, i] + offsets.get(c, 0.0) for c, i in places.items()})
     sd, ar = {**experiment.sensors, **likelihood.noise_model.sd}, likelihood.noise_model.ar
     if not likelihood.leads:
         return likelihood.with_noise_model(NoiseModel(sd, ar)).begun({run.name: Begin(start)}), [run]

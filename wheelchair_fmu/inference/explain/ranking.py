@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..decision.verdict import Diagnosis
+from ..estimation.interval import NORMAL
 from ..estimation.score import Score
 from ..estimation.statistics import cosines, estimates, finite
 from ..search.candidate import Candidate
@@ -118,6 +119,7 @@ def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dic
         "rivals": [{**rival, **_odds(c, rival["effect"], r)} for rival in rivals],
         "verdict": _row_verdict(d, s, c),
         "one_form_of": _cause(d, s.effect),
+        "in_model": s.effect in d.included,
     }
 
 
@@ -150,12 +152,21 @@ def _odds(c: Candidate | None, rival: str, r: Round) -> dict[str, float]:
     return {"log_odds": round(c.support.large - other.support.large, 2)} if c and other else {}
 
 
+def _surely_small(d: Diagnosis, s: Score) -> bool:
+    """Is an effect of the last model, with its standard errors, below the sizes of interest?"""
+    value, covariance = estimates(d.top, s.names)
+    reach = np.abs(value) + NORMAL * np.sqrt(np.maximum(np.diag(covariance), 0))
+    return bool(np.all(reach < d.models.factory.deltas(s.names)))
+
+
 def _row_verdict(d: Diagnosis, s: Score, c: Candidate | None) -> str:
     if any(s.effect in t for t in d.ties):
         return "tie"
     if s.effect in d.effects:
         return "small" if d.verdict == "small" else "missing"
-    if s.effect in d.included or (c and not c.matters and c.p < SIGNIFICANT):
+    if s.effect in d.included:
+        return "small" if _surely_small(d, s) else "cannot_see"
+    if c and not c.matters and c.p < SIGNIFICANT:
         return "small"
     return "not needed" if s.power >= d.models.policy.power else "cannot_see"
 

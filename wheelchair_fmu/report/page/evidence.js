@@ -63,6 +63,7 @@ const isChosen = (row, { diagnosis }) => diagnosis.effects.includes(row.effect) 
 /** What became of an effect, in words. */
 function became(row, parameters, campaign) {
   const { diagnosis } = campaign, shows = row.p < SEEN || parameters.some(([, v]) => v.se !== null && Math.abs(v.estimate) > PLAIN * v.se);
+  if (row.in_model && row.verdict === "cannot_see") return "helps; how large it is, these runs do not tell";
   if (shows && !isChosen(row, campaign) && UNCHOSEN.includes(row.verdict)) {
     if (parameters.every(([p, v]) => v.se !== null && Math.abs(v.estimate) + 1.96 * v.se < p.delta)) return VERDICTS.small;
     return diagnosis.effects.length || diagnosis.leftover?.proposal ? "another explains it better" : "not chosen";
