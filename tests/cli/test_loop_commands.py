@@ -14,7 +14,10 @@ from typer.testing import CliRunner
 from tests.kit import with_settings
 from wheelchair_fmu.campaign import condensed, read
 from wheelchair_fmu.cli.main import app
+from wheelchair_fmu.cli.staircase import staircase_table
+from wheelchair_fmu.inference.decision.among_forces import FORCES
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
+from wheelchair_fmu.inference.residual.staircase import Step
 from wheelchair_fmu.model.variant import Variant
 
 SAMPLE = str(Path(__file__).parents[2] / "examples" / "sample-campaign")
@@ -167,3 +170,9 @@ def test_a_notebook_s_colours_bring_no_control_codes_into_a_pipe(tmp_path, monke
     monkeypatch.setenv("FORCE_COLOR", "1")
     told = run("compare", SAMPLE, "-o", str(tmp_path))
     assert told.exit_code == 0 and "\x1b" not in told.output
+
+
+def test_a_staircase_says_from_where_on_forces_are_noise():
+    steps = [Step("nominal", 9.0, 9.0), Step("calibrated", 3.0, 3.0)]
+    assert staircase_table(steps).caption is None
+    assert FORCES in str(staircase_table([*steps, Step(FORCES, 1.0, 1.0)]).caption)

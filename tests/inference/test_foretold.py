@@ -10,7 +10,7 @@ import pytest
 
 from tests.inference.linear import evidence
 from wheelchair_fmu.errors import SimulationError
-from wheelchair_fmu.inference.decision.foretold import on_led_runs, raised, worse, worsened
+from wheelchair_fmu.inference.decision.foretold import on_led_runs, raised, untold, worse, worsened
 from wheelchair_fmu.inference.residual.physical import ChannelError
 from wheelchair_fmu.inference.residual.staircase import Step
 from wheelchair_fmu.inference.search import selection
@@ -44,6 +44,21 @@ def test_a_position_that_is_further_off_by_chance_is_not_worse(after, said):
         replace(step(name, x=x), heldout_whitened={"x": w}) for name, x, w in (("c", 0.0145, 1.04), ("+m", 0.0295, after))
     )
     assert len(worsened([step("nominal"), before, last])) == said
+
+
+@pytest.mark.parametrize(
+    ("off", "noise", "said"),
+    [
+        (0.02, 0.003, 1),  # a heading that wanders as far as the model's, which is ten times what the sensor's noise is
+        (0.02, 0.015, 0),  # there is nothing to foretell but noise
+        (0.01, 0.003, 0),  # half of what a constant leaves
+    ],
+)
+def test_a_channel_that_is_foretold_no_better_than_by_a_constant_is_said(off, noise, said):
+    moving = np.tile([0.02, -0.02], 20)
+    step = Step("+drag", 1.0, 1.0, {}, {"run": {"yaw": ChannelError.of("yaw", moving, moving - off)}})
+    told = untold(step, {"yaw": noise})
+    assert len(told) == said and all("a constant for each run by 1.15" in words for words in told)
 
 
 def test_where_nothing_was_put_in_or_held_out_nothing_is_said():

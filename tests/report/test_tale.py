@@ -239,7 +239,7 @@ def test_what_is_in_the_model_and_may_be_large_is_not_called_too_small():
     assert story.cards[1]["lines"][0].endswith(f"with rear wheels that lean put in as well,{said}")
     answer = next(c["answer"] for c in story.screens[1]["choices"] if c["effect"] == LEAN)
     assert answer.startswith("It is in the model, at ") and answer.endswith("which these runs leave open.")
-    assert verdict_words({"verdict": "cannot_see", "p": 0.01, "in_model": True}) == "helps, size unsure"
+    assert verdict_words({"verdict": "cannot_see", "p": 0.01, "in_model": True}) == "size unsure"
 
 
 def test_centre_of_mass_is_written_in_full():

@@ -12,6 +12,7 @@ from rich.console import JustifyMethod
 from rich.table import Table
 
 from ..contracts.own import text_of
+from ..inference.decision.among_forces import FORCES
 from ..inference.residual.staircase import Step
 from ..model.variant import Variant
 from ..report.figures import staircase_figure
@@ -19,6 +20,9 @@ from ..report.saving import save
 from ..writing import written
 
 BAR = 24  # characters, for the highest step
+FROM_HERE = (
+    f"From the step “{FORCES}” on these count as noise: by that whitened errors fall, and those in each channel's unit do not."
+)
 FLOOR = "whitened RMS error, 1.0 is the noise floor"
 
 
@@ -32,6 +36,8 @@ def staircase_table(ladder: Sequence[Step]) -> Table:
     for s, height in zip(ladder, shown, strict=True):
         bar = "█" * max(1, round(BAR * height / max(shown)))
         table.add_row(s.name, f"{s.fit:.3f}", f"{s.heldout:.3f}" if math.isfinite(s.heldout) else "none", bar)
+    if any(s.name == FORCES for s in ladder):
+        table.caption, table.caption_justify = FROM_HERE, "left"
     return table
 
 

@@ -317,7 +317,7 @@ def verdict_words(row: Mapping[str, Any]) -> str:
     """What became of an effect of the ranking. One that the data show was seen, even where others explain them better. Of a
     cause with several forms the law is one. What only helps the model may be of any size."""
     if row["verdict"] == "cannot_see" and row.get("in_model"):
-        return "helps, size unsure"
+        return "size unsure"
     if row["verdict"] == "cannot_see" and row["p"] < SEEN:
         return "not chosen"
     words = str(row["verdict"]).replace("_", " ")

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from math import inf, sqrt
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from ..models.models import Models
 from ..residual.physical import ChannelError, channel_errors, pooled
 from ..residual.staircase import Step
 
+NO_BETTER = 1.05  # times an error: a constant that is as far off as that is no worse
+PLAIN = 2.0  # times a sensor's noise, from which there is something to foretell
 WORSE = 1.1  # times an error: a start that is off within what readings say of it changes one by less
 
 
@@ -38,6 +41,19 @@ def worsened(ladder: Sequence[Step]) -> list[str]:
         f"by {before.rms:.2g}: for this channel what was found is no improvement"
         for channel, before, after in _by_channel(calibrated, further[-1])
         if after.rms > WORSE * before.rms
+    ]
+
+
+def untold(last: Step, noise: Mapping[str, float]) -> list[str]:
+    """A sentence for each channel that a model foretells no better than a constant does, with clearly more left than its
+    sensor's `noise` (SI), of which nobody foretells anything."""
+    held = bool(last.heldout_errors)
+    errors = pooled((last.heldout_errors if held else last.fit_errors).values())
+    return [
+        f"{channel}: on the runs {'held out' if held else 'fitted'} the last model is off by {e.rms:.3g} {e.unit}, and a "
+        f"constant for each run by {e.constant:.3g}: what changes there it does not foretell"
+        for channel, e in errors.items()
+        if e.rms * NO_BETTER > e.constant and sqrt(e.squares / max(e.count, 1)) > PLAIN * noise.get(channel, inf)
     ]
 
 
