@@ -249,9 +249,12 @@ def test_files_of_loggers_are_asked_about_in_words_and_lengths(page: Any, tmp_pa
     )  # no table of columns to mend
     for words, size in {"mass of chair and rider": 90, "radius of": lab.RADIUS, "A rear axle": 0.44, "B centre": 0.1}.items():
         typed(page.locator("#lab label", has_text=words).locator("input"), str(size))
+    typed(page.locator("#lab [name=caster_trail]"), "50 mm")
+    typed(page.locator("#lab [name=wheel_inertia]"), "0.12 kg m2")
     page.click("#import")
     done(page, "import")
     page.wait_for_function("() => workbench.state.campaign.chair?.b === 0.1")
+    assert page.evaluate("workbench.state.campaign.effect.caster_trail.c") == 0.05
     assert page.evaluate("workbench.state.campaign.chair") == {"m": 90, "a": 0.34, "b": 0.1}
     assert not page.is_visible("#import") and page.inner_text("#faults b") == "These recordings can be read."
     assert "how far the rear wheels are apart" in page.inner_text("#assumed")
@@ -259,6 +262,7 @@ def test_files_of_loggers_are_asked_about_in_words_and_lengths(page: Any, tmp_pa
     page.wait_for_selector("#lab")
     page.click("#lab > summary")
     assert page.input_value("#lab [name=wheelbase]") == "0.44" and page.input_value("#lab [name=person]") == ""
+    assert abs(float(page.input_value("#lab [name=wheel_inertia]")) - 0.12) < 1e-4
 
 
 def test_an_answer_that_comes_late_does_not_hide_what_came_after(page: Any) -> None:
