@@ -8,6 +8,7 @@ import pytest
 
 from wheelchair_fmu.engine import cache, compiler, shipped, store
 from wheelchair_fmu.errors import BuildError
+from wheelchair_fmu.fmu.platforms import PLATFORMS
 from wheelchair_fmu.model.wheelchair import Choice
 
 PAPER = cache.Wanted.of(Choice(), ())
@@ -62,3 +63,18 @@ def test_what_does_not_load_here_is_compiled_and_said(installed, monkeypatch, ca
     with caplog.at_level(logging.INFO), pytest.raises(BuildError, match="no C compiler"):
         cache.library(Choice(), ())
     assert "does not load here" in caplog.text
+
+
+def test_a_library_for_macos_is_the_same_wherever_it_is_made(tmp_path):
+    """Its linker writes a library's own path into it, unless it is told a name."""
+    pytest.importorskip("ziglang")
+    made = []
+    for name in ("here", "elsewhere"):
+        (tmp_path / name).mkdir()
+        source = tmp_path / name / "one.c"
+        source.write_text('__attribute__((visibility("default"))) int one(void) { return 1; }\n', encoding="utf-8")
+        target = tmp_path / name / "kernel.dylib"
+        cross = PLATFORMS["aarch64-darwin"].command()
+        part = compiler.compile_object(source, tmp_path / name / "one.o", (), cross)
+        made.append(compiler.compile_shared([part], target, (), cross).read_bytes())
+    assert made[0] == made[1] and b"elsewhere" not in made[1]

@@ -68,7 +68,9 @@ def compile_shared(
 
     Raises BuildError with the compiler's own words.
     """
-    return _compiled([*(cross or command()), *FLAGS, "-shared"], sources, target, [*extra, "-lm"])
+    named = any("install_name" in flag for flag in extra) or target.suffix != ".dylib"
+    own = () if named else (f"-Wl,-install_name,@rpath/kernel{target.suffix}",)  # macOS's linker would write where it was made
+    return _compiled([*(cross or command()), *FLAGS, "-shared"], sources, target, [*extra, *own, "-lm"])
 
 
 def compile_object(source: Path, target: Path, extra: Sequence[str] = (), cross: tuple[str, ...] | None = None) -> Path:
