@@ -65,16 +65,18 @@ def test_what_does_not_load_here_is_compiled_and_said(installed, monkeypatch, ca
     assert "does not load here" in caplog.text
 
 
-def test_a_library_for_macos_is_the_same_wherever_it_is_made(tmp_path):
-    """Its linker writes a library's own path into it, unless it is told a name."""
+@pytest.mark.parametrize("system", ["aarch64-darwin", "x86_64-windows"])
+def test_a_library_for_another_system_is_the_same_wherever_it_is_made(tmp_path, monkeypatch, system):
+    """Linkers write in a library's own path, or a name made up for each, unless they are told otherwise."""
     pytest.importorskip("ziglang")
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     made = []
     for name in ("here", "elsewhere"):
         (tmp_path / name).mkdir()
         source = tmp_path / name / "one.c"
         source.write_text('__attribute__((visibility("default"))) int one(void) { return 1; }\n', encoding="utf-8")
-        target = tmp_path / name / "kernel.dylib"
-        cross = PLATFORMS["aarch64-darwin"].command()
+        target = tmp_path / name / f"kernel{PLATFORMS[system].suffix}"
+        cross = PLATFORMS[system].command()
         part = compiler.compile_object(source, tmp_path / name / "one.o", (), cross)
         made.append(compiler.compile_shared([part], target, (), cross).read_bytes())
     assert made[0] == made[1] and b"elsewhere" not in made[1]

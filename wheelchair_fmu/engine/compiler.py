@@ -68,8 +68,11 @@ def compile_shared(
 
     Raises BuildError with the compiler's own words.
     """
-    named = any("install_name" in flag for flag in extra) or target.suffix != ".dylib"
-    own = () if named else (f"-Wl,-install_name,@rpath/kernel{target.suffix}",)  # macOS's linker would write where it was made
+    own: tuple[str, ...] = ()
+    if target.suffix == ".dylib" and not any("install_name" in flag for flag in extra):
+        own = (f"-Wl,-install_name,@rpath/kernel{target.suffix}",)  # or the linker writes in where it was made,
+    elif target.suffix == ".dll" and cross:
+        own = ("-s",)  # and for Windows a name of its own for each time
     return _compiled([*(cross or command()), *FLAGS, "-shared"], sources, target, [*extra, *own, "-lm"])
 
 
