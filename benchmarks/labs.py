@@ -42,7 +42,7 @@ GIVEN = {  # by the protocols; and where the sensor sits
     "lab-01": (95, 0.307, 0.55, 0.405, 0.12, 0.42),
     "lab-02": (82, 0.306, 0.57, 0.41, 0.16, 0.45),
 }
-CASTERS = {"--caster-trail": 0.05, "--wheel-inertia": 0.12}  # which the protocols have as well
+CASTERS = {"--caster-trail": 0.05, "--wheel-inertia": 0.12}  # which all protocols have, and all chairs that are drawn
 AT = {"lab-01": "[0.09, 0.04]", "lab-02": "[-0.22, 0.0]"}
 GRAVITY = 9.81
 OF_THE_BODY = re.compile(r"^\[rider\]\n(?:.+\n)*|, sternum = [^}]*(?= \})", re.MULTILINE)  # lines and words of a campaign
@@ -225,18 +225,19 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("out/labs"), help="what was found is kept here")
     chosen = parser.parse_args()
     chosen.out.mkdir(parents=True, exist_ok=True)
+    more = CASTERS if chosen.casters else {}
     for name in chosen.labs or ([] if chosen.drawn else GIVEN):
-        lab = recorded(chosen.measurements, name)
-        lab = replace(lab, sizes={**lab.sizes, **(CASTERS if chosen.casters else {})})
-        told(name, lambda _, lab=lab: lab, chosen.out, not chosen.unfilmed)
+        told(name, lambda _, name=name: recorded(chosen.measurements, name), chosen.out, not chosen.unfilmed, more)
     for seed in chosen.drawn:
-        told(f"drawn-{seed}", lambda raw, seed=seed: drawn(raw, seed), chosen.out, not chosen.unfilmed)
+        told(f"drawn-{seed}", lambda raw, seed=seed: drawn(raw, seed), chosen.out, not chosen.unfilmed, more)
 
 
-def told(name: str, lab: Callable[[Path], Lab], out: Path, filmed: bool) -> None:
-    """Import and diagnose one lab, keep its figures and print them; `lab` may write its raw files into a folder."""
+def told(name: str, lab: Callable[[Path], Lab], out: Path, filmed: bool, more: Mapping[str, float]) -> None:
+    """Import and diagnose one lab, with `more` of its sizes, keep its figures and print them; `lab` may write its raw files
+    into a folder."""
     with tempfile.TemporaryDirectory() as place:
         one = lab(Path(place) / "raw")
+        one = replace(one, sizes={**one.sizes, **more})
         found = row(one.answer, imported(one, Path(place) / name, filmed))
     (out / f"{name}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
     table = Table(title=f"{name}, {found['seconds']:.0f} s", show_header=False)

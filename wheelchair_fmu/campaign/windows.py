@@ -23,6 +23,7 @@ NEAR = 2.0  # s by which the start of a window may move to where the chair hardl
 CALM = 0.5  # s over which that is judged
 PUSHED = 0.1  # m/s by which hands, or a body that swings, change a chair's speed within a tenth of a second
 LEAST_SAMPLES = 10  # of a piece
+PIECE = "@"  # stands between the name of a run and when a piece of it begins
 STARTS = "start."  # parameters that say where a run starts
 HEADING = "start.psi"
 
@@ -109,7 +110,7 @@ def _cut(run: Run, start: int, stop: int) -> Run:
     baselines = tuple(replace(b, shapes=b.shapes[part]) for b in run.baselines)
     return replace(
         run,
-        name=f"{run.name}@{run.time[start]:.6g}s",
+        name=f"{run.name}{PIECE}{run.time[start]:.6g}s",
         u0=_speed(run.time[part], channels) if start else run.u0,
         u0_sd=PUSHED if start else run.u0_sd,
         set=known,

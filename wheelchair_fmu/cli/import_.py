@@ -141,11 +141,9 @@ def _usable(output: Path, axes: str, force: bool, sizes: Mapping[str, float | No
     if axes and axes not in AXES:
         raise UsageError(f"no axes {axes!r}; use {' or '.join(AXES)}")
     for name, value in sizes.items():
-        most = MOST_OF.get(name, MOST_OF_ANY)
-        if value is not None and not 0 < value < most:
-            raise UsageError(
-                f"--{name.replace('_', '-')} {value:g} is no size of a wheelchair; give {SIZES[name]}, below {most:g}"
-            )
+        if value is not None and not 0 < value < _most(name):
+            option = f"--{name.replace('_', '-')}"
+            raise UsageError(f"{option} {value:g} is no size of a wheelchair; give {SIZES[name]}, below {_most(name):g}")
     wheelbase, ahead = sizes["wheelbase"], sizes["cm_ahead"]
     if wheelbase is not None and ahead is not None and ahead >= wheelbase:
         raise UsageError(

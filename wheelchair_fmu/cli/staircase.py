@@ -21,7 +21,8 @@ from ..writing import written
 
 BAR = 24  # characters, for the highest step
 FROM_HERE = (
-    f"From the step “{FORCES}” on these count as noise: by that whitened errors fall, and those in each channel's unit do not."
+    f"From the step “{FORCES}” on, such forces count as noise. By that alone whitened errors fall; those in each channel's "
+    "unit do not."
 )
 FLOOR = "whitened RMS error, 1.0 is the noise floor"
 

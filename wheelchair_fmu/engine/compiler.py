@@ -68,12 +68,10 @@ def compile_shared(
 
     Raises BuildError with the compiler's own words.
     """
-    own: tuple[str, ...] = ()
-    if target.suffix == ".dylib" and not any("install_name" in flag for flag in extra):
-        own = (f"-Wl,-install_name,@rpath/kernel{target.suffix}",)  # or the linker writes in where it was made,
-    elif target.suffix == ".dll" and cross:
-        own = ("-s",)  # and for Windows a name of its own for each time
-    return _compiled([*(cross or command()), *FLAGS, "-shared"], sources, target, [*extra, *own, "-lm"])
+    # Or linkers write in where a library was made, on macOS, and for Windows a name made up for each.
+    named = [f"-Wl,-install_name,@rpath/{target.name}"] if target.suffix == ".dylib" else []
+    stripped = ["-s"] if cross else []
+    return _compiled([*(cross or command()), *FLAGS, "-shared"], sources, target, [*extra, *named, *stripped, "-lm"])
 
 
 def compile_object(source: Path, target: Path, extra: Sequence[str] = (), cross: tuple[str, ...] | None = None) -> Path:

@@ -11,7 +11,6 @@ from ..errors import BuildError, unknown
 
 # -Bsymbolic: our calls reach our functions, whatever the importer has loaded before.
 ELF = ("-Wl,-Bsymbolic", "-Wl,--no-undefined", "-s")
-MACH = ("-s", "-Wl,-install_name,@rpath/Wheelchair.dylib")
 
 # glibc has newer versions of these, which differ in errno alone. Linked with the oldest, a library loads on systems as old
 # as those that ziglang builds for.
@@ -54,8 +53,8 @@ PLATFORMS = {
         Platform("x86_64-linux", "linux64", "x86_64-linux-gnu.2.17", ".so", ELF),
         Platform("aarch64-linux", "aarch64-linux", "aarch64-linux-gnu.2.17", ".so", ELF),
         Platform("x86_64-windows", "win64", "x86_64-windows-gnu", ".dll", ("-s",)),
-        Platform("x86_64-darwin", "darwin64", "x86_64-macos.11.0", ".dylib", MACH),
-        Platform("aarch64-darwin", "aarch64-darwin", "aarch64-macos.11.0", ".dylib", MACH),
+        Platform("x86_64-darwin", "darwin64", "x86_64-macos.11.0", ".dylib", ("-s",)),
+        Platform("aarch64-darwin", "aarch64-darwin", "aarch64-macos.11.0", ".dylib", ("-s",)),
     )
 }
 

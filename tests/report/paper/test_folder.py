@@ -176,3 +176,13 @@ def test_another_chair_is_noticed():
 def test_a_table_can_be_read_back():
     text = tables.covariance(case_of()).to_csv(float_format="%.10g")
     assert pd.read_csv(StringIO(text), index_col=0).shape == (9, 9)
+
+
+def test_a_run_whose_name_begins_as_another_s_is_no_piece_of_it():
+    case = case_of()
+    run = next(r for r in case.campaign.runs if r.name == "coast-down")
+    namesake = replace(run, name="coast-down@2")
+    campaign = replace(case.campaign, runs=(*case.campaign.runs, namesake))
+    used = {**case.final["runs"], "coast-down@2": case.final["runs"]["coast-down"]}
+    both = replace(case, campaign=campaign, told={**case.told, "final": {**case.final, "runs": used}})
+    assert len(both.pieces(run)) == len(both.pieces(namesake)) == 1

@@ -165,8 +165,7 @@ def test_what_was_used_of_the_runs_is_said_and_what_was_not_has_its_own_reason()
     runs = found["final"]["runs"]
     whole = runs.pop("coast-down")
     middle = (whole["from"] + whole["to"]) / 2
-    half = {c: {**told, "readings": told["readings"] // 2, "used": told["used"]} for c, told in whole["channels"].items()}
-    half = {c: {**told, "used": None} for c, told in half.items()}
+    half = {c: {**told, "readings": told["readings"] // 2, "used": None} for c, told in whole["channels"].items()}
     runs["coast-down"] = {**whole, "from": whole["from"] + 0.5, "to": middle, "channels": half}
     runs["coast-down@9s"] = {**whole, "from": middle + 1.0, "channels": half}
     case = case_of(found)

@@ -31,6 +31,11 @@ def on_led_runs(step: Step, values: Mapping[str, float], led: Models) -> Step:
     return replace(step, fit_errors=fitted, heldout_errors=held)
 
 
+def remarks(ladder: Sequence[Step], noise: Mapping[str, float]) -> list[str]:
+    """All that follows of a staircase, with the sensors' `noise` (SI)."""
+    return [*raised(ladder), *worsened(ladder), *untold(ladder[-1], noise)]
+
+
 def worsened(ladder: Sequence[Step]) -> list[str]:
     """A sentence for each channel that the last model foretells clearly worse on held-out runs than the calibrated one does."""
     (_, calibrated, *further) = ladder

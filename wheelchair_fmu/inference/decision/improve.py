@@ -20,7 +20,7 @@ from ..search.beginning import begin
 from ..search.refitting import candidate
 from ..search.screen import screen
 from ..search.selection import selection
-from .foretold import raised, untold, worsened
+from .foretold import remarks
 from .verdict import Diagnosis
 
 
@@ -51,8 +51,7 @@ def add(
         now = now.up_to(*_with(now.models, now.top, effect))
     models, fit = now.models, now.top.fit
     heard = (*begun.heard(clocks(fit.evidence, now.top.heldout)), *models.setting.notes)
-    told = (*raised(now.ladder), *worsened(now.ladder), *untold(now.ladder[-1], models.setting.noise_model.sd))
-    notes = (*heard, *told)
+    notes = (*heard, *remarks(now.ladder, models.setting.noise_model.sd))
     records = models.likelihood(now.effects).records
     return Improved(improved(chair, now.effects, fit, campaign), fit, records, now.ladder, notes)
 

@@ -46,7 +46,7 @@ from .ahead import Ahead, ahead, run_to_fit, which_to_fit
 from .among_forces import led, left, needed, staircase
 from .decide import Facts, Larger, decide, instead_of_small, slight
 from .experiment import Experiment, reveal, separate
-from .foretold import raised, untold, worsened
+from .foretold import remarks
 from .leftover import leftover, prepare, settled
 
 
@@ -164,8 +164,7 @@ def diagnose(
     found = tried.found if tried and tried.found else _with_forces(concluded(search, generic or {}), tried, among)
     if found.verdict == "outside" and experiments and not found.to_fit:
         found = replace(found, next_experiment=lead(found.calibration, found.unexplained))
-    told = (*raised(found.ladder), *worsened(found.ladder), *untold(found.ladder[-1], found.models.setting.noise_model.sd))
-    notes = (*found.notes, *told)
+    notes = (*found.notes, *remarks(found.ladder, found.models.setting.noise_model.sd))
     return replace(found, notes=notes, seconds=time.monotonic() - began)
 
 

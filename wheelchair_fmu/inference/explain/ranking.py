@@ -152,11 +152,10 @@ def _odds(c: Candidate | None, rival: str, r: Round) -> dict[str, float]:
     return {"log_odds": round(c.support.large - other.support.large, 2)} if c and other else {}
 
 
-def _surely_small(d: Diagnosis, s: Score) -> bool:
-    """Is an effect of the last model, with its standard errors, below the sizes of interest?"""
-    value, covariance = estimates(d.top, s.names)
-    reach = np.abs(value) + NORMAL * np.sqrt(np.maximum(np.diag(covariance), 0))
-    return bool(np.all(reach < d.models.factory.deltas(s.names)))
+def _surely_small(d: Diagnosis, s: Score, c: Candidate | None) -> bool:
+    """Is an effect, with its standard errors, below the sizes of interest?"""
+    value, se = _estimate(d, s, c)
+    return bool(np.all(np.abs(value) + NORMAL * se < d.models.factory.deltas(s.names)))
 
 
 def _row_verdict(d: Diagnosis, s: Score, c: Candidate | None) -> str:
@@ -165,7 +164,7 @@ def _row_verdict(d: Diagnosis, s: Score, c: Candidate | None) -> str:
     if s.effect in d.effects:
         return "small" if d.verdict == "small" else "missing"
     if s.effect in d.included:
-        return "small" if _surely_small(d, s) else "cannot_see"
+        return "small" if _surely_small(d, s, c) else "cannot_see"
     if c and not c.matters and c.p < SIGNIFICANT:
         return "small"
     return "not needed" if s.power >= d.models.policy.power else "cannot_see"

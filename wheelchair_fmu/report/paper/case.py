@@ -9,6 +9,7 @@ from math import nan
 from typing import Any
 
 from ...campaign import Campaign, Run
+from ...campaign.windows import PIECE
 from ...errors import Failure
 from ...inference.decision.among_forces import FORCES
 from ...model.generic import library
@@ -18,7 +19,6 @@ NORMAL = 1.96  # standard errors either way, where no profile of the likelihood 
 PROFILE, BY_ERRORS = "profile likelihood", "standard errors"
 NEEDED = ("final", "fingerprint", "made_by")  # keys of a diagnosis that earlier versions did not write
 GENERIC = "generic_"
-PIECE = "@"  # stands between the name of a run and when a piece of it begins
 EFFECT, OFFSET = "effect.", "offset."
 
 
@@ -82,7 +82,9 @@ class Case:
 
     def pieces(self, run: Run) -> list[Mapping[str, Any]]:
         """What of a run the last model was compared with: all of it, a part, or several where the chair stood in between."""
-        return [told for name, told in self.final["runs"].items() if name == run.name or name.startswith(f"{run.name}{PIECE}")]
+        used, runs = self.final["runs"], {r.name for r in self.campaign.runs}
+        parts = [name for name in used if name.startswith(f"{run.name}{PIECE}") and name not in runs]
+        return [used[name] for name in (run.name, *parts) if name in used]
 
     def used(self, run: Run) -> list[tuple[float, float]]:
         """From when to when (s) that is."""
