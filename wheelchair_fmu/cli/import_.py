@@ -143,7 +143,9 @@ def _usable(output: Path, axes: str, force: bool, sizes: Mapping[str, float | No
     for name, value in sizes.items():
         if value is not None and not 0 < value < _most(name):
             option = f"--{name.replace('_', '-')}"
-            raise UsageError(f"{option} {value:g} is no size of a wheelchair; give {SIZES[name]}, below {_most(name):g}")
+            raise UsageError(
+                f"{option} {value:g} is no size of a wheelchair ({SIZES[name]}); give more than 0 and less than {_most(name):g}"
+            )
     wheelbase, ahead = sizes["wheelbase"], sizes["cm_ahead"]
     if wheelbase is not None and ahead is not None and ahead >= wheelbase:
         raise UsageError(
