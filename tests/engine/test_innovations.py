@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from wheelchair_fmu.engine.innovations import Disturbance, Noise, Whitener
+from wheelchair_fmu.engine.innovations import ByForces, Disturbance, Noise, Whitener
 from wheelchair_fmu.engine.smoothing import smoothed
 
 
@@ -89,8 +89,36 @@ def test_forces_that_nobody_recorded_are_part_of_the_covariance():
         assert white @ white == pytest.approx(signal.ravel() @ np.linalg.solve(V, signal.ravel()), rel=1e-8)
         assert filter_.logdet == pytest.approx(np.linalg.slogdet(V)[1], rel=1e-9)
         assert filter_.response(np.ones((n, nq))).shape == (n, nz)
-        assert plain.deviance(unknown, signal[:, :, 0], mean) == pytest.approx(white @ white + filter_.logdet, rel=1e-12)
+        deviance = ByForces(plain, replace(unknown, sd=np.ones(2)), signal[:, :, 0], mean)
+        assert deviance(unknown.sd, unknown.lasting) == pytest.approx(white @ white + filter_.logdet, rel=1e-12)
     assert plain.disturbed(replace(unknown, sd=np.zeros(2))).logdet == pytest.approx(plain.logdet, rel=1e-12)
+
+
+@pytest.mark.parametrize("ar", [0.0, 0.6])
+def test_inputs_that_never_have_noise_change_nothing(ar):
+    """A push that is known exactly, and a force that was found to be none, before, between and after those that act."""
+    rng = np.random.default_rng(8)
+    n, nx, nz, mean = 14, 3, 2, np.array([0.1, 0.0, -0.2])
+    run = drawn(rng, n, nx, nz, 0.3)
+    start, sd, colour = np.diag([0.1, 0.0, 0.2]) ** 2, np.array([0.2, 0.4]), np.array([ar, 0.0])
+    few = Noise(np.array([0.3, 0.5]), np.array([0.2, 0.0]), sd, colour, start)
+    more = Noise(np.array([0.0, 0.3, 0.0, 0.5]), np.array([0.1, 0.2, 0.1, 0.0]), sd, colour, start)
+    acts, present = rng.normal(size=(4, 3)), rng.random((n, nz)) < 0.9
+    common = np.array([[1.0, 0.2, 0.3], [0.2, 1.0, 0.1], [0.3, 0.1, 1.0]])
+    lasting = rng.uniform(0.02, 0.1, size=(n, 3))
+    every = Disturbance(np.array([2.0, 0.0, 0.7]), lasting, acts, common)
+    acting = Disturbance(every.sd[[0, 2]], lasting[:, [0, 2]], acts[[1, 3]][:, [0, 2]], common[np.ix_([0, 2], [0, 2])])
+    acts[[0, 2]] = 0.0
+    one = Whitener(run, [0, 1], more, present, disturbance=every)
+    other = Whitener(run, [0, 1], few, present, pushes=[1, 3], disturbance=acting)
+    assert one.logdet == pytest.approx(other.logdet, rel=1e-12)
+    np.testing.assert_allclose(one.spread, other.spread, rtol=1e-12)
+    signals = rng.normal(size=(n, nz, 30))
+    for some in (signals[:, :, :1], signals):
+        np.testing.assert_allclose(one(some, mean), other(some, mean), rtol=1e-9, atol=1e-12)
+    told = one(signals[:, :, :1], mean)[:, :, 0]
+    np.testing.assert_allclose(one.smoothed(told)[:, [0, 2]], other.smoothed(told), rtol=1e-9, atol=1e-12)
+    assert not one.smoothed(told)[:, 1].any()
 
 
 def test_a_disturbance_is_smoothed_as_all_readings_have_it():

@@ -205,14 +205,6 @@ class Whitener:
         other._design()
         return other
 
-    def deviance(self, disturbance: Disturbance, residual: np.ndarray, start_mean: np.ndarray) -> float:
-        """−2 log likelihood, but for a constant, of a residual (n, nz) where such forces act that nobody recorded; `start_mean`
-        as in a call. To ask this needs no gains, which are most of what a filter is."""
-        other = self._composed(disturbance)
-        given = [np.ascontiguousarray(a, float) for a in (start_mean, residual)]
-        told = _library().wc_deviance(ctypes.byref(other._filter), ctypes.c_long(len(residual)), *map(_of, given))
-        return float(told) + self._of_kinks
-
     def _composed(self, disturbance: Disturbance) -> Whitener:
         """The same but for its gains, which are those of the forces that were."""
         steps, of_kinks = self._steps, self._of_kinks  # which both have
@@ -293,6 +285,29 @@ class Whitener:
         from_there.start_cov = certain.ctypes.data
         _library().wc_spread(ctypes.byref(from_there), ctypes.c_long(len(scale)), _of(scale))
         return scale
+
+
+class ByForces:
+    """−2 log likelihood, but for a constant, of a residual (n, nz) of a filter's run by how strong forces are that nobody
+    recorded; `start_mean` as in a call of the filter. To ask this needs no gains, which are most of what a filter is, and what
+    `forces` do to the run is found once."""
+
+    def __init__(self, filter_: Whitener, forces: Disturbance, residual: np.ndarray, start_mean: np.ndarray):
+        self._composed = filter_._composed(forces)
+        self._residual, self._start_mean = (np.ascontiguousarray(a, float) for a in (residual, start_mean))
+        self._gap = np.diff(filter_.time)[:, None]
+
+    def __call__(self, sd: np.ndarray, lasting: np.ndarray) -> float:
+        """With forces of these standard deviations and times, as in a `Disturbance`."""
+        sds, kept = (self._composed.arrays[name].copy() for name in ("input_sd", "input_phi"))
+        unknown = slice(self._composed.recorded, None)
+        sds[:, unknown] = sd
+        kept[:, unknown] = np.exp(-self._gap / np.broadcast_to(lasting, sds[:, unknown].shape)[:-1])
+        filter_ = FilterRecord.from_buffer_copy(self._composed._filter)
+        filter_.input_sd, filter_.input_phi = sds.ctypes.data, kept.ctypes.data
+        given = map(_of, (self._start_mean, self._residual))
+        told = _library().wc_deviance(ctypes.byref(filter_), ctypes.c_long(len(sds)), *given)
+        return float(told) + self._composed._of_kinks
 
 
 def steps(time: np.ndarray, present: np.ndarray) -> np.ndarray:

@@ -8,7 +8,8 @@
  * may hide in z, so residuals and sensitivities go through alike.
  * Its gains depend on the variances only: they are designed once and applied to as many signals as come.
  *
- * The filter's own state is s = (e, q, a), of size nx + nq + nz.
+ * The filter's own state is s = (e, q, a), of size nx + nq + nz. Of inputs that never have noise, as of forces that were found
+ * to be none, there is nothing to learn: they are left out of it while covariances and signals are carried on.
  */
 #include "innovations.h"
 #include "rows.h"
@@ -36,18 +37,51 @@ static int lasts(const filter *f, long n) {
     return 0;
 }
 
-/* Of input or reading k of s, the share that stays from sample i to i+1. */
-static inline double stays(const filter *f, long i, int k) {
-    return k < f->nx + f->nq ? f->input_phi[i * f->nq + k - f->nx] : f->phi[i * f->nz + k - f->nx - f->nq];
+/* The inputs that ever have noise, and the size of s with these alone. */
+typedef struct {
+    int n, which[WC_MOST], lasting, size; /* is the readings' own noise in it? */
+} acting;
+
+static acting acting_of(const filter *f, long n) {
+    acting a = {0};
+    for (int q = 0; q < f->nq; q++) {
+        int silent = 1;
+        for (long i = 0; silent && i < n; i++) silent = f->input_sd[i * f->nq + q] == 0;
+        if (!silent) a.which[a.n++] = q;
+    }
+    a.lasting = lasts(f, n);
+    a.size = f->nx + a.n + (a.lasting ? f->nz : 0);
+    return a;
 }
 
-/* F of the states (nx rows of nx + nq): what takes them from sample i to i+1, but for fresh noise. */
-static inline void find_motion(const filter *f, long i, double *F) {
-    int nx = f->nx, nq = f->nq;
-    for (int r = 0; r < nx; r++, F += nx + nq) {
-        const double *B = f->B + (i * nx + r) * nq, *C = f->C + (i * nx + r) * nq;
+/* Of a row of all inputs, what belongs to those that act. */
+static inline void take(const acting *a, const double *row, double *to) {
+    for (int q = 0; q < a->n; q++) to[q] = row[a->which[q]];
+}
+
+/* Where element k of s stands among all of them. */
+static inline int place(const filter *f, const acting *a, int k) {
+    int own = f->nx + a->n;
+    return k < f->nx ? k : k < own ? f->nx + a->which[k - f->nx] : k - own + f->nx + f->nq;
+}
+
+/* Of all of s but the states, the share that stays from sample i to i+1. */
+static inline void find_stays(const filter *f, const acting *a, long i, double *stays) {
+    take(a, f->input_phi + i * f->nq, stays);
+    if (a->lasting) memcpy(stays + a->n, f->phi + i * f->nz, sizeof(double) * (size_t)f->nz);
+}
+
+/* F of the states (nx rows of nx + the inputs that act): what takes them from sample i to i+1, but for fresh noise, of which C
+ * (nx rows of these inputs) says what it does. */
+static inline void find_motion(const filter *f, const acting *a, long i, double *F, double *C) {
+    int nx = f->nx, nq = a->n;
+    double phi[WC_MOST];
+    take(a, f->input_phi + i * f->nq, phi);
+    for (int r = 0; r < nx; r++, F += nx + nq, C += nq) {
         memcpy(F, f->A + (i * nx + r) * nx, sizeof(double) * (size_t)nx);
-        for (int q = 0; q < nq; q++) F[nx + q] = B[q] + C[q] * f->input_phi[i * nq + q];
+        take(a, f->B + (i * nx + r) * f->nq, F + nx);
+        take(a, f->C + (i * nx + r) * f->nq, C);
+        for (int q = 0; q < nq; q++) F[nx + q] += C[q] * phi[q];
     }
 }
 
@@ -55,31 +89,37 @@ static inline void find_motion(const filter *f, long i, double *F) {
 
 /* The covariance of s, in rows of whole lanes. */
 typedef struct {
-    int size, stride, lasting; /* is the readings' own noise in it? */
+    acting a;
+    int size, stride;
     double P[WC_MOST * WC_MOST];
 } covariance;
 
 static void begin(const filter *f, long n, covariance *c) {
-    int nx = f->nx, nq = f->nq, own = nx + nq;
-    c->lasting = lasts(f, n);
-    c->size = own + (c->lasting ? f->nz : 0);
+    c->a = acting_of(f, n);
+    int nx = f->nx, nq = c->a.n, own = nx + nq;
+    double sd[WC_MOST];
+    take(&c->a, f->input_sd, sd);
+    c->size = c->a.size;
     c->stride = padded(c->size);
     memset(c->P, 0, sizeof(double) * (size_t)(c->size * c->stride));
     for (int r = 0; r < nx; r++) memcpy(c->P + r * c->stride, f->start_cov + r * nx, sizeof(double) * (size_t)nx);
     for (int q = 0; q < nq; q++) {
-        for (int p = 0; p < nq; p++) c->P[(nx + q) * c->stride + nx + p] = common(f, q, p) * f->input_sd[q] * f->input_sd[p];
+        double *row = c->P + (nx + q) * c->stride + nx;
+        for (int p = 0; p < nq; p++) row[p] = common(f, c->a.which[q], c->a.which[p]) * sd[q] * sd[p];
     }
     for (int z = 0; z < c->size - own; z++) c->P[(own + z) * (c->stride + 1)] = f->sd[z] * f->sd[z];
 }
 
-/* rows: what fresh noise of each input at i+1 (nq) shares with s there, through the states and in itself. */
-static void find_fresh(const filter *f, long i, int stride, double *rows) {
-    int nx = f->nx, nq = f->nq;
-    const double *phi = f->input_phi + i * nq, *sd = f->input_sd + (i + 1) * nq, *C = f->C + i * nx * nq;
+/* rows: what fresh noise of each input at i+1 (nq) shares with s there, through the states, by C (nx x nq), and in itself. */
+static void find_fresh(const filter *f, const acting *a, long i, int stride, const double *C, double *rows) {
+    int nx = f->nx, nq = a->n;
+    double phi[WC_MOST], sd[WC_MOST];
+    take(a, f->input_phi + i * f->nq, phi);
+    take(a, f->input_sd + (i + 1) * f->nq, sd);
     memset(rows, 0, sizeof(double) * (size_t)(nq * stride));
     for (int q = 0; q < nq; q++) {
         for (int p = 0; p < nq; p++) {
-            double factor = common(f, q, p);
+            double factor = common(f, a->which[q], a->which[p]);
             if (factor == 0) continue;
             double shared = factor * (1 - phi[q] * phi[p]) * sd[q] * sd[p];
             for (int r = 0; r < nx; r++) rows[q * stride + r] += shared * C[r * nq + p];
@@ -90,19 +130,21 @@ static void find_fresh(const filter *f, long i, int stride, double *rows) {
 
 /* P at sample i+1 from P at i: F P Fᵀ, of which the states' own part is all that takes a second product, and fresh noise. */
 static void predict(const filter *f, long i, covariance *c) {
-    int stride = c->stride, nx = f->nx, nq = f->nq, both = nx + nq, size = c->size, short_stride = padded(nx);
-    double F[WC_MOST * WC_MOST], T[WC_MOST * WC_MOST], U[WC_MOST * WC_MOST], fresh[WC_MOST * WC_MOST], *P = c->P;
-    find_motion(f, i, F);
+    int stride = c->stride, nx = f->nx, nq = c->a.n, both = nx + nq, size = c->size, short_stride = padded(nx);
+    double F[WC_MOST * WC_MOST], T[WC_MOST * WC_MOST], U[WC_MOST * WC_MOST], fresh[WC_MOST * WC_MOST], C[WC_MOST * WC_MOST];
+    double stays[WC_MOST], *P = c->P;
+    find_motion(f, &c->a, i, F, C);
+    find_stays(f, &c->a, i, stays);
     memset(T, 0, sizeof(double) * (size_t)(nx * stride));
     for (int r = 0; r < nx; r++) add_rows(stride, 1, &(weighed_rows){both, P, stride, F + r * both, 1}, T + r * stride);
     memset(U, 0, sizeof(double) * (size_t)(both * short_stride));
     for (int k = 0; k < both; k++) {
         for (int r = 0; r < nx; r++) U[k * short_stride + r] = T[r * stride + k];
     }
-    find_fresh(f, i, stride, fresh);
+    find_fresh(f, &c->a, i, stride, C, fresh);
     for (int k = nx; k < size; k++) {
-        double stay = stays(f, i, k);
-        for (int j = nx; j < size; j++) P[k * stride + j] *= stay * stays(f, i, j);
+        double stay = stays[k - nx];
+        for (int j = nx; j < size; j++) P[k * stride + j] *= stay * stays[j - nx];
         for (int r = 0; r < nx; r++) P[r * stride + k] = stay * T[r * stride + k];
         if (k < both) add_row_of(stride, 1, fresh + (k - nx) * stride, P + k * stride);
         else P[k * stride + k] += (1 - stay * stay) * f->sd[k - both] * f->sd[k - both];
@@ -111,20 +153,22 @@ static void predict(const filter *f, long i, covariance *c) {
         double sum[WC_MOST] = {0};
         add_rows(short_stride, 1, &(weighed_rows){both, U, short_stride, F + r * both, 1}, sum);
         memcpy(P + r * stride, sum, sizeof(double) * (size_t)nx);
-        add_rows(stride, 1, &(weighed_rows){nq, fresh, stride, f->C + (i * nx + r) * nq, 1}, P + r * stride);
+        add_rows(stride, 1, &(weighed_rows){nq, fresh, stride, C + r * nq, 1}, P + r * stride);
         for (int k = nx; k < size; k++) P[k * stride + r] = P[r * stride + k];
     }
 }
 
 /* Variance of reading z at sample i, and Ph, its covariance with s. */
 static double expect(const filter *f, long i, int z, const covariance *c, double *Ph) {
-    int stride = c->stride, nx = f->nx, nq = f->nq, own = nx + nq + z;
-    const double *H = f->H + (i * f->nz + z) * nx, *D = f->D + (i * f->nz + z) * nq;
-    if (c->lasting) memcpy(Ph, c->P + own * stride, sizeof(double) * (size_t)stride);
+    int stride = c->stride, nx = f->nx, nq = c->a.n, own = nx + nq + z;
+    const double *H = f->H + (i * f->nz + z) * nx;
+    double D[WC_MOST];
+    take(&c->a, f->D + (i * f->nz + z) * f->nq, D);
+    if (c->a.lasting) memcpy(Ph, c->P + own * stride, sizeof(double) * (size_t)stride);
     else memset(Ph, 0, sizeof(double) * (size_t)stride);
     add_rows(stride, 1, &(weighed_rows){nx, c->P, stride, H, 1}, Ph);
     add_rows(stride, 1, &(weighed_rows){nq, c->P + nx * stride, stride, D, 1}, Ph);
-    double variance = c->lasting ? Ph[own] : f->sd[z] * f->sd[z];
+    double variance = c->a.lasting ? Ph[own] : f->sd[z] * f->sd[z];
     for (int k = 0; k < nx; k++) variance += H[k] * Ph[k];
     for (int q = 0; q < nq; q++) variance += D[q] * Ph[nx + q];
     return variance;
@@ -153,8 +197,8 @@ double wc_design(const filter *f, long n, double *gain, double *scale) {
             double variance = hear(f, i, z, &c, Ph);
             scale[i * f->nz + z] = 1 / sqrt(variance);
             total += log(variance);
-            for (int r = 0; r < c.size; r++) K[r] = Ph[r] / variance;
-            if (!c.lasting) K[both + z] = f->sd[z] * f->sd[z] / variance;
+            for (int r = 0; r < c.size; r++) K[place(f, &c.a, r)] = Ph[r] / variance;
+            if (!c.a.lasting) K[both + z] = f->sd[z] * f->sd[z] / variance;
         }
     }
     return total;
@@ -163,37 +207,37 @@ double wc_design(const filter *f, long n, double *gain, double *scale) {
 /* --- signals --- */
 
 /* s of some signals side by side, in rows of whole lanes, one sample on. */
-static void carry(const filter *f, long i, int lasting, const double *S, double *next, int stride) {
-    int nx = f->nx, nq = f->nq, both = nx + nq, size = both + (lasting ? f->nz : 0);
-    double F[WC_MOST * WC_MOST];
-    find_motion(f, i, F);
-    memset(next, 0, sizeof(double) * (size_t)(size * stride));
+static void carry(const filter *f, const acting *a, long i, const double *S, double *next, int stride) {
+    int nx = f->nx, both = nx + a->n;
+    double F[WC_MOST * WC_MOST], C[WC_MOST * WC_MOST], stays[WC_MOST];
+    find_motion(f, a, i, F, C);
+    find_stays(f, a, i, stays);
+    memset(next, 0, sizeof(double) * (size_t)(a->size * stride));
     for (int r = 0; r < nx; r++) add_rows(stride, 1, &(weighed_rows){both, S, stride, F + r * both, 1}, next + r * stride);
-    for (int k = nx; k < size; k++) {
-        double stay = stays(f, i, k);
-        add_row_of(stride, stay, S + k * stride, next + k * stride);
-    }
+    for (int k = nx; k < a->size; k++) add_row_of(stride, stays[k - nx], S + k * stride, next + k * stride);
 }
 
 /* What is new in a reading of these signals, given s, which it then corrects. */
-static void correct(const filter *f, long at, int lasting, const double *gain, double *S, double *signal, int stride) {
-    int nx = f->nx, nq = f->nq, own = nx + nq + (int)(at % f->nz), size = nx + nq + (lasting ? f->nz : 0);
+static void correct(const filter *f, const acting *a, long at, const double *gain, double *S, double *signal, int stride) {
+    int nx = f->nx, nq = a->n, own = nx + nq + (int)(at % f->nz);
+    double D[WC_MOST];
+    take(a, f->D + at * f->nq, D);
     add_rows(stride, -1, &(weighed_rows){nx, S, stride, f->H + at * nx, 1}, signal);
-    add_rows(stride, -1, &(weighed_rows){nq, S + nx * stride, stride, f->D + at * nq, 1}, signal);
-    if (lasting) add_row_of(stride, -1, S + own * stride, signal);
-    for (int r = 0; r < size; r++) add_row_of(stride, gain[r], signal, S + r * stride);
+    add_rows(stride, -1, &(weighed_rows){nq, S + nx * stride, stride, D, 1}, signal);
+    if (a->lasting) add_row_of(stride, -1, S + own * stride, signal);
+    for (int r = 0; r < a->size; r++) add_row_of(stride, gain[place(f, a, r)], signal, S + r * stride);
 }
 
 /* Whitens `some` of the m signals, the first of which is `signals`; start_mean is of this one, if it is the first of all. */
-static void whiten(const filter *f, long n, const double *gain, const double *scale, const double *start_mean, int m, int some,
-                   double *signals) {
-    int stride = padded(some), nx = f->nx, nz = f->nz, size = nx + f->nq + nz, lasting = lasts(f, n);
+static void whiten(const filter *f, const acting *a, long n, const double *gain, const double *scale, const double *start_mean,
+                   int m, int some, double *signals) {
+    int stride = padded(some), nx = f->nx, nz = f->nz, all = nx + f->nq + nz;
     double one[WC_MOST * LANES * LANE], other[WC_MOST * LANES * LANE], *S = one, *next = other, signal[LANES * LANE] = {0};
-    memset(S, 0, sizeof(double) * (size_t)(size * stride));
+    memset(S, 0, sizeof(double) * (size_t)(a->size * stride));
     for (int r = 0; start_mean && r < nx; r++) S[r * stride] = start_mean[r];
     for (long i = 0; i < n; i++) {
         if (i) {
-            carry(f, i - 1, lasting, S, next, stride);
+            carry(f, a, i - 1, S, next, stride);
             double *kept = S;
             S = next;
             next = kept;
@@ -205,52 +249,52 @@ static void whiten(const filter *f, long n, const double *gain, const double *sc
                 continue;
             }
             memcpy(signal, to, sizeof(double) * (size_t)some);
-            correct(f, at, lasting, gain + at * size, S, signal, stride);
+            correct(f, a, at, gain + at * all, S, signal, stride);
             for (int j = 0; j < some; j++) to[j] = signal[j] * scale[at];
         }
     }
 }
 
 /* s of one signal, one sample on. */
-static void carry_one(const filter *f, long i, int lasting, const double *s, double *next) {
-    int nx = f->nx, nq = f->nq, size = nx + nq + (lasting ? f->nz : 0);
-    double moved[WC_MOST];
-    for (int k = nx; k < size; k++) next[k] = stays(f, i, k) * s[k];
-    for (int q = 0; q < nq; q++) moved[q] = s[nx + q];
+static void carry_one(const filter *f, const acting *a, long i, const double *s, double *next) {
+    int nx = f->nx, nq = a->n;
+    double stays[WC_MOST];
+    find_stays(f, a, i, stays);
+    for (int k = nx; k < a->size; k++) next[k] = stays[k - nx] * s[k];
     for (int r = 0; r < nx; r++) {
-        const double *A = f->A + (i * nx + r) * nx, *B = f->B + (i * nx + r) * nq, *C = f->C + (i * nx + r) * nq;
+        const double *A = f->A + (i * nx + r) * nx, *B = f->B + (i * nx + r) * f->nq, *C = f->C + (i * nx + r) * f->nq;
         double sum = 0;
         for (int k = 0; k < nx; k++) sum += A[k] * s[k];
-        for (int q = 0; q < nq; q++) sum += B[q] * moved[q] + C[q] * next[nx + q];
+        for (int q = 0; q < nq; q++) sum += B[a->which[q]] * s[nx + q] + C[a->which[q]] * next[nx + q];
         next[r] = sum;
     }
 }
 
 /* What a reading is expected to be. */
-static double expected(const filter *f, long at, int lasting, const double *s) {
-    int nx = f->nx, nq = f->nq;
-    double sum = lasting ? s[nx + nq + at % f->nz] : 0;
+static double expected(const filter *f, const acting *a, long at, const double *s) {
+    int nx = f->nx, nq = a->n;
+    double sum = a->lasting ? s[nx + nq + at % f->nz] : 0;
     for (int k = 0; k < nx; k++) sum += f->H[at * nx + k] * s[k];
-    for (int q = 0; q < nq; q++) sum += f->D[at * nq + q] * s[nx + q];
+    for (int q = 0; q < nq; q++) sum += f->D[at * f->nq + a->which[q]] * s[nx + q];
     return sum;
 }
 
 /* One signal, which is what is most asked for. */
-static void whiten_one(const filter *f, long n, const double *gain, const double *scale, const double *start_mean,
-                       double *signal) {
-    int nz = f->nz, all = f->nx + f->nq + nz, lasting = lasts(f, n), size = lasting ? all : all - nz;
+static void whiten_one(const filter *f, const acting *a, long n, const double *gain, const double *scale,
+                       const double *start_mean, double *signal) {
+    int nz = f->nz, all = f->nx + f->nq + nz;
     double one[WC_MOST] = {0}, other[WC_MOST], *s = one, *next = other;
     memcpy(s, start_mean, sizeof(double) * (size_t)f->nx);
     for (long i = 0; i < n; i++) {
         if (i) {
-            carry_one(f, i - 1, lasting, s, next);
+            carry_one(f, a, i - 1, s, next);
             double *kept = s;
             s = next;
             next = kept;
         }
         for (long at = i * nz; at < (i + 1) * nz; at++) {
-            double told = f->present[at] ? signal[at] - expected(f, at, lasting, s) : 0;
-            if (f->present[at]) add_row(size, told, gain + at * all, s);
+            double told = f->present[at] ? signal[at] - expected(f, a, at, s) : 0;
+            for (int r = 0; f->present[at] && r < a->size; r++) s[r] += told * gain[at * all + place(f, a, r)];
             signal[at] = told * scale[at];
         }
     }
@@ -258,13 +302,14 @@ static void whiten_one(const filter *f, long n, const double *gain, const double
 
 void wc_whiten(const filter *f, long n, const double *gain, const double *scale, const double *start_mean, int m,
                double *signals) {
+    acting a = acting_of(f, n);
     if (m == 1) {
-        whiten_one(f, n, gain, scale, start_mean, signals);
+        whiten_one(f, &a, n, gain, scale, start_mean, signals);
         return;
     }
     for (int first = 0, some; first < m; first += some) {
         some = m - first < LANES * LANE ? m - first : LANES * LANE;
-        whiten(f, n, gain, scale, first ? 0 : start_mean, m, some, signals + first);
+        whiten(f, &a, n, gain, scale, first ? 0 : start_mean, m, some, signals + first);
     }
 }
 
@@ -278,7 +323,7 @@ double wc_deviance(const filter *f, long n, const double *start_mean, const doub
     for (long i = 0; i < n; i++) {
         if (i) {
             predict(f, i - 1, &c);
-            carry_one(f, i - 1, c.lasting, s, next);
+            carry_one(f, &c.a, i - 1, s, next);
             double *kept = s;
             s = next;
             next = kept;
@@ -286,7 +331,7 @@ double wc_deviance(const filter *f, long n, const double *start_mean, const doub
         for (int z = 0; z < nz; z++) {
             long at = i * nz + z;
             if (!f->present[at]) continue;
-            double variance = hear(f, i, z, &c, Ph), told = residual[at] - expected(f, at, c.lasting, s);
+            double variance = hear(f, i, z, &c, Ph), told = residual[at] - expected(f, &c.a, at, s);
             total += told * told / variance + log(variance);
             add_row(c.size, told / variance, Ph, s);
         }
@@ -381,15 +426,18 @@ static double undone(const filter *f, int state, int q) {
     return swings(f, q) ? (f->B[at] + f->C[at]) / log(f->input_phi[q]) : 0; /* -T / dt = 1 / log φ */
 }
 
-/* A simulation without such inputs begins where that is undone already. P: rows of n. */
-static void begin_undone(const filter *f, int n, double *P) {
-    int nx = f->nx, nq = f->nq;
+/* A simulation without such inputs begins where that is undone already. */
+static void begin_undone(const filter *f, covariance *c) {
+    int nx = f->nx, nq = c->a.n, n = c->stride;
+    double *P = c->P;
     for (int r = 0; r < nx; r++) {
-        for (int q = 0; q < nq; q++) add_row(nq, undone(f, r, q), P + (nx + q) * n + nx, P + r * n + nx);
+        for (int q = 0; q < nq; q++) {
+            add_row(nq, undone(f, r, c->a.which[q]), P + (nx + q) * n + nx, P + r * n + nx);
+        }
         for (int q = 0; q < nq; q++) P[(nx + q) * n + r] = P[r * n + nx + q];
     }
     for (int r = 0; r < nx; r++) {
-        for (int q = 0; q < nq; q++) add_row(nx, undone(f, r, q), P + (nx + q) * n, P + r * n);
+        for (int q = 0; q < nq; q++) add_row(nx, undone(f, r, c->a.which[q]), P + (nx + q) * n, P + r * n);
     }
 }
 
@@ -397,7 +445,7 @@ void wc_spread(const filter *f, long n, double *scale) {
     double Ph[WC_MOST];
     covariance c;
     begin(f, n, &c);
-    if (n > 1) begin_undone(f, c.stride, c.P);
+    if (n > 1) begin_undone(f, &c);
     for (long i = 0; i < n; i++) {
         if (i) predict(f, i - 1, &c);
         for (int z = 0; z < f->nz; z++) scale[i * f->nz + z] = 1 / sqrt(expect(f, i, z, &c, Ph));

@@ -16,11 +16,11 @@ import numpy as np
 from scipy.optimize import minimize
 
 from ...campaign import moving
-from ...engine.innovations import Disturbance, Whitener
+from ...engine.innovations import ByForces, Disturbance, Whitener
 from ..parallel import parallel_map
 from .evidence import Evidence, RunEvidence
 from .likelihood import Likelihood
-from .noise_model import FORGOTTEN, NoiseModel, disturbance, pushes_of, stroke
+from .noise_model import FORGOTTEN, NoiseModel, disturbance, pushes_of, stroke, strong_and_lasting
 
 SIZES = ("force", "moment", "body", "tremor")
 USUAL = np.array([5.0, 1.0, 5.0, 1.0])  # N, N m, N s and N m: a strength's prior falls by e over this
@@ -90,9 +90,12 @@ def strength(evidence: Evidence, t_r: float, b: float, about: Strength | None = 
     as they are.
     """
 
+    by_forces = parallel_map(lambda e: _by_forces(e, t_r), evidence.runs)
+
     def deviances(strengths: Sequence[Strength]) -> np.ndarray:
         ratios = np.array([[getattr(s, name) for name in SIZES] for s in strengths]) / USUAL
-        return _deviances(evidence, [s.put_into(NoiseModel({})) for s in strengths], t_r) + 2 * np.sum(ratios, axis=1)
+        told = parallel_map(lambda asked: asked[1](asked[0]), product(strengths, by_forces))
+        return np.sum(np.reshape(told, (len(strengths), -1)), axis=1) + 2 * np.sum(ratios, axis=1)
 
     none = Strength(0.0, 0.0, 0.0, 0.0, stroke=stroke(*(e.run for e in evidence.runs)))
     starts = [*_starts(none, about)]
@@ -188,13 +191,14 @@ def _forces(e: RunEvidence, noise_model: NoiseModel, t_r: float) -> Disturbance:
     return disturbance(noise_model, inputs, t_r, swinging=noise_model.swung(e.effort), speed=e.pace)
 
 
-def _deviances(evidence: Evidence, noise_models: Sequence[NoiseModel], t_r: float) -> np.ndarray:
-    """−2 log likelihood with forces as strong as each of `noise_models` has them (k,), but for a constant."""
+def _by_forces(e: RunEvidence, t_r: float) -> Callable[[Strength], float]:
+    """−2 log likelihood of a run, but for a constant, by how strong forces are."""
+    every, filter_ = Strength(1.0, 1.0, 1.0, 0.0, floor=1.0, tremor=1.0, bumps=1.0), e.filter.whitener
+    forces = _forces(e, every.put_into(NoiseModel({})), t_r)
+    deviance = ByForces(filter_, forces, e.measured - e.foretold, e.offset[: filter_.size[0]])
 
-    def one(asked: tuple[NoiseModel, RunEvidence]) -> float:
-        noise_model, e = asked
-        filter_ = e.filter.whitener
-        return filter_.deviance(_forces(e, noise_model, t_r), e.measured - e.foretold, e.offset[: filter_.size[0]])
+    def of(strength: Strength) -> float:
+        noise_model = strength.put_into(NoiseModel({}))
+        return deviance(*strong_and_lasting(noise_model, noise_model.swung(e.effort), e.pace))
 
-    told = parallel_map(one, product(noise_models, evidence.runs))
-    return np.sum(np.reshape(told, (len(noise_models), -1)), axis=1)
+    return of

@@ -151,8 +151,7 @@ def disturbance(
     is as it is in each place: who rolls slowly stays longer on a slope, and gains or loses the more by it. Bumps are shorter
     than a chair, and push one wheel and not the other, so that they turn it as well.
     """
-    body, floor = _swing(noise_model.body, SWUNG), _rate(noise_model.floor, noise_model.lasting)
-    lasting = np.array([FORGOTTEN, noise_model.lasting, PATCH, PATCH, *body.lasting, *floor.lasting])  # s, or m
+    body, floor = _body_and_floor(noise_model)
     as_push, common = np.zeros((len(inputs), FORCED)), np.eye(FORCED)
     common[np.ix_(BODYS, BODYS)], common[-len(RISES) :, -len(RISES) :] = body.together, floor.together
     shares = {EXTERNAL[0]: (1.0, 0.0), EXTERNAL[1]: (0.0, 1.0)}
@@ -161,10 +160,23 @@ def disturbance(
     for name, (ahead, turning) in shares.items():
         back = -along * ahead * np.sign([*body.rates, *floor.rates])
         as_push[inputs.index(name)] = [along * ahead, turning, turning, along * ahead, *back]
+    return Disturbance(*strong_and_lasting(noise_model, swinging, speed), as_push, common)
+
+
+def strong_and_lasting(
+    noise_model: NoiseModel, swinging: np.ndarray | float = 1.0, speed: np.ndarray | float = 1.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Standard deviations of the processes of `disturbance`, and the times (s) over which each is forgotten, (d,) or (n, d)."""
+    body, floor = _body_and_floor(noise_model)
+    lasting = np.array([FORGOTTEN, noise_model.lasting, PATCH, PATCH, *body.lasting, *floor.lasting])  # s, or m
     rates = np.abs([*body.rates, *floor.rates])
     sd = np.array([noise_model.force, noise_model.moment, noise_model.tremor, noise_model.bumps, *rates])
     seconds = np.where(PLACES, np.multiply.outer(1 / np.asarray(speed), lasting), lasting)
-    return Disturbance(np.where(BODYS, np.multiply.outer(swinging, sd), sd), seconds, as_push, common)
+    return np.where(BODYS, np.multiply.outer(swinging, sd), sd), seconds
+
+
+def _body_and_floor(noise_model: NoiseModel) -> tuple[_Swing, _Swing]:
+    return _swing(noise_model.body, SWUNG), _rate(noise_model.floor, noise_model.lasting)
 
 
 class _Swing(NamedTuple):
