@@ -27,7 +27,7 @@ FIGURE = Path("out/growth.png")
 # Imported where they run: the processes of fmpy's loop begin with this file, and need none of what the others do.
 GROUPS = (
     *("step_cost", "run_cost", "sensitivity_cost", "steady_cost", "lanes_cost"),
-    *("file_cost", "sweep_cost", "loop_cost", "command_cost", "page_cost"),
+    *("file_cost", "sweep_cost", "loop_cost", "command_cost", "search_cost", "page_cost"),
 )
 LARGE = ("large", "fleet_cost")  # half an hour and more; kept apart, and a section of their own on the page
 TARGETS = {False: Path("out/bench.json"), True: Path("out/bench-large.json")}

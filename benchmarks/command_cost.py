@@ -9,17 +9,18 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
+from types import MappingProxyType
 
 from .rows import Row, timed
 
 ROOT = Path(__file__).parent.parent
 WHAT, TARGET, REPEATS = "the command diagnose", 10.0, 3  # s
 FIRST, FIRST_TARGET = "the command diagnose, nothing compiled yet", 15.0  # s
-WORDS = [sys.executable, "-m", "wheelchair_fmu", "diagnose", "examples/sample-campaign"]
+SAMPLE = Path("examples/sample-campaign")
 
 
 def rows() -> Iterator[Row]:
@@ -41,4 +42,10 @@ def _first(tree: Path) -> float:
 
 
 def _run(tree: Path, more: dict[str, str]) -> None:
-    subprocess.run(WORDS, cwd=tree, check=True, capture_output=True, env={**os.environ, **more})
+    command(SAMPLE, tree=tree, more=more)
+
+
+def command(*words: str | Path, tree: Path = ROOT, more: Mapping[str, str] = MappingProxyType({})) -> None:
+    """`diagnose` with these words, a campaign and options, by the package in this tree."""
+    every = [sys.executable, "-m", "wheelchair_fmu", "diagnose", *map(str, words)]
+    subprocess.run(every, cwd=tree, check=True, capture_output=True, env={**os.environ, **more})
