@@ -45,9 +45,10 @@ def child(words: Sequence[str], **options: Any) -> Iterator[subprocess.Popen[str
             _held.discard(guard.stdin)
 
 
-def run(words: Sequence[str], seconds: float) -> subprocess.CompletedProcess[str]:
-    """What a command says, and its exit code. Raises TimeoutExpired after `seconds`, and as `child`."""
-    with child(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+def run(words: Sequence[str], seconds: float, folder: str | None = None) -> subprocess.CompletedProcess[str]:
+    """What a command says that runs in a folder, or in the current one, and its exit code. Raises TimeoutExpired after
+    `seconds`, and as `child`."""
+    with child(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=folder) as process:
         out, err = process.communicate(timeout=seconds)
     return subprocess.CompletedProcess(words, process.returncode, out, err)
 

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+import re
+import shlex
+import sys
 from pathlib import Path
 
 import pytest
@@ -11,6 +14,8 @@ from wheelchair_fmu.engine import cache, compiler, objects
 from wheelchair_fmu.errors import BuildError
 from wheelchair_fmu.model.wheelchair import Choice
 
+# The same program, which the package does not know for its own.
+ZIG_BY_ITS_FILE = (sys.executable, "-c", "import runpy; runpy.run_module('ziglang', run_name='__main__')", "cc")
 posix = pytest.mark.skipif(os.name == "nt", reason="a shell's script")
 
 
@@ -23,6 +28,26 @@ def test_flags_of_a_compiler_make_it_another(monkeypatch):
         assert compiler.version.__wrapped__() != plain
     finally:
         compiler.command.cache_clear()
+
+
+def test_zig_is_the_same_compiler_whatever_the_path_of_the_interpreter_that_runs_it(monkeypatch):
+    """Or two folders give two libraries: for macOS objects are linked in the order of their names, which are keys."""
+    pytest.importorskip("ziglang")
+    here = compiler.version.__wrapped__((*compiler.ZIG, "-target", "x86_64-macos.11.0"))
+    monkeypatch.setattr(compiler, "ZIG", ("/elsewhere/python", *compiler.ZIG[1:]))
+    assert compiler.version.__wrapped__((*compiler.ZIG, "-target", "x86_64-macos.11.0")) == here
+    assert re.fullmatch(r"ziglang [\d.]+\S* -target x86_64-macos\.11\.0", here)
+
+
+@pytest.mark.parametrize("by_environment", [False, True])
+def test_asking_zig_for_its_version_leaves_nothing_behind(cc, tmp_path, monkeypatch, by_environment):
+    pytest.importorskip("ziglang")
+    monkeypatch.chdir(tmp_path)
+    asked = (*compiler.ZIG, "-target", "x86_64-macos.11.0")
+    if by_environment:
+        cc(shlex.join((*ZIG_BY_ITS_FILE, *asked[len(compiler.ZIG) :])))
+    assert compiler.version.__wrapped__(None if by_environment else asked)
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.fixture

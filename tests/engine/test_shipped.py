@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import logging
+import os
+import sys
+from pathlib import Path
 
 import pytest
 
-from wheelchair_fmu.engine import cache, compiler, shipped, store
+from wheelchair_fmu.engine import cache, compiler, objects, shipped, store
 from wheelchair_fmu.errors import BuildError
 from wheelchair_fmu.fmu.platforms import PLATFORMS
 from wheelchair_fmu.model.wheelchair import Choice
@@ -65,18 +68,31 @@ def test_what_does_not_load_here_is_compiled_and_said(installed, monkeypatch, ca
     assert "does not load here" in caplog.text
 
 
-@pytest.mark.parametrize("system", ["aarch64-darwin", "x86_64-windows"])
+def another_path(folder):
+    """Ziglang as it is run by this interpreter, from an environment that is called by another path."""
+    inside = Path(sys.executable)
+    if os.name == "nt" or not inside.is_relative_to(sys.prefix):
+        pytest.skip("this interpreter's environment cannot be called by another path")
+    environment = folder / "environment"
+    environment.symlink_to(sys.prefix)
+    return (str(environment / inside.relative_to(sys.prefix)), *compiler.ZIG[1:])
+
+
+@pytest.mark.parametrize("system", ["aarch64-darwin", "x86_64-darwin", "x86_64-windows"])
 def test_a_library_for_another_system_is_the_same_wherever_it_is_made(tmp_path, monkeypatch, system):
-    """Linkers write in a library's own path, or a name made up for each, unless they are told otherwise."""
+    """Linkers write in a library's own path, or a name made up for each, unless they are told otherwise, and for macOS they
+    put objects in the order of their names."""
     pytest.importorskip("ziglang")
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    texts = [f'__attribute__((visibility("default"))) int f{n}(void) {{ return {n}; }}\n' for n in range(6)]
     made = []
     for name in ("here", "elsewhere"):
-        (tmp_path / name).mkdir()
-        source = tmp_path / name / "one.c"
-        source.write_text('__attribute__((visibility("default"))) int one(void) { return 1; }\n', encoding="utf-8")
-        target = tmp_path / name / f"kernel{PLATFORMS[system].suffix}"
+        place = tmp_path / name
+        place.mkdir()
+        monkeypatch.setenv("WHEELCHAIR_CACHE", str(place / "cache"))
+        monkeypatch.setattr(compiler, "ZIG", another_path(place))
         cross = PLATFORMS[system].command()
-        part = compiler.compile_object(source, tmp_path / name / "one.o", (), cross)
-        made.append(compiler.compile_shared([part], target, (), cross).read_bytes())
+        parts = [objects.compiled("equations", text, (), cross) for text in texts]
+        target = place / f"kernel{PLATFORMS[system].suffix}"
+        made.append(compiler.compile_shared(parts, target, PLATFORMS[system].link, cross).read_bytes())
     assert made[0] == made[1] and b"elsewhere" not in made[1]

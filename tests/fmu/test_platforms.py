@@ -6,7 +6,6 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -66,7 +65,7 @@ def _trajectory(unpacked: Unpacked, library: Path, program: Path, version: str, 
 
 def _host(folder: Path, target: str = "") -> Path:
     program = folder / f"trajectory-{target or 'here'}.exe"
-    command = (sys.executable, "-m", "ziglang", "cc", "-target", target) if target else compiler.command()
+    command = (*compiler.ZIG, "-target", target) if target else compiler.command()
     libraries = ["-lm"] if "windows" in target else ["-lm", "-ldl"]
     words = [*command, "-std=gnu11", "-O1", "-fno-sanitize=all", "-ffp-contract=off", f"-I{headers()}"]
     done = subprocess.run([*words, str(HERE / "trajectory.c"), "-o", str(program), *libraries], capture_output=True, text=True)

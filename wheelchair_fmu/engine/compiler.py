@@ -12,14 +12,17 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from functools import cache
+from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from ..children import run
 from ..errors import BuildError
 
 # Contracting a·b + c to one rounding would give other digits on other machines. Nobody asks errno after a square root.
 FLAGS = ("-std=c11", "-O2", "-g0", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-fvisibility=hidden", "-fno-sanitize=all")
+ZIG = (sys.executable, "-m", "ziglang", "cc")
 LONGEST = 900.0  # seconds: ziglang compiles its C library at first, which takes slow machines minutes
 CURE = "set CC to one, or unset it"
 MACHINE = {"amd64": "x86_64", "arm64": "aarch64"}.get(platform.machine().lower(), platform.machine().lower())
@@ -44,7 +47,7 @@ def command() -> tuple[str, ...]:
         if path := shutil.which(name):
             return (path,)
     if find_spec("ziglang"):
-        return (sys.executable, "-m", "ziglang", "cc")
+        return ZIG
     raise BuildError("no C compiler found; install gcc or clang, or `pip install ziglang`")
 
 
@@ -53,10 +56,22 @@ def version(cross: tuple[str, ...] | None = None) -> str:
     """What is asked for, by $CC or as the compiler for another system, and what the compiler says of itself, for keys of what
     is kept."""
     asked = cross or command()
-    said = _run([*asked, "--version"], 60.0).strip()
+    if asked[: len(ZIG)] == ZIG and find_spec("ziglang"):
+        # Objects are named by keys, and linked for macOS in the order of their names: another path would be another library.
+        return shlex.join(("ziglang", metadata.version("ziglang"), *asked[len(ZIG) :]))
+    said = _asked(asked)
     if not said:
         raise BuildError(f"{shlex.join(asked)} --version says nothing, so it is no C compiler; {CURE}")
     return f"{shlex.join(cross) if cross else os.environ.get('CC', '')} {said.splitlines()[0]}"
+
+
+def _asked(words: Sequence[str]) -> str:
+    """What a compiler says of its version."""
+    if not any("zig" in Path(word).name for word in words):
+        return _run([*words, "--version"], 60.0).strip()
+    with TemporaryDirectory() as folder:  # for macOS, zig leaves an empty object in the folder where it is asked
+        program = str(Path(words[0]).absolute()) if Path(words[0]).name != words[0] else words[0]
+        return _run([program, *words[1:], "--version"], 60.0, folder).strip()
 
 
 def compile_shared(
@@ -81,7 +96,7 @@ def compile_object(source: Path, target: Path, extra: Sequence[str] = (), cross:
 
 def compile_wasm(sources: Sequence[Path], target: Path, flags: Sequence[str]) -> Path:
     """Compile `sources` into a WebAssembly module by ziglang, the only compiler that brings its own C library for it."""
-    return _compiled([sys.executable, "-m", "ziglang", "cc"], sources, target, flags)
+    return _compiled([*ZIG], sources, target, flags)
 
 
 def _compiled(compiler: list[str], sources: Sequence[Path], target: Path, flags: Sequence[str]) -> Path:
@@ -91,11 +106,12 @@ def _compiled(compiler: list[str], sources: Sequence[Path], target: Path, flags:
     return target
 
 
-def _run(words: list[str], seconds: float | None = None) -> str:
-    """What a compiler prints. Raises BuildError, in one sentence and the compiler's own words."""
+def _run(words: list[str], seconds: float | None = None, folder: str | None = None) -> str:
+    """What a compiler prints, run in a folder or in the current one. Raises BuildError, in one sentence and the compiler's own
+    words."""
     seconds = seconds or LONGEST
     try:
-        done = run(words, seconds)
+        done = run(words, seconds, folder)
     except OSError as error:
         raise BuildError(f"cannot run the C compiler {words[0]!r}: {error.strerror}; set CC to one that runs") from error
     except subprocess.TimeoutExpired:

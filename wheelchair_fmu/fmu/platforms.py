@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 
@@ -43,7 +42,7 @@ class Platform:
             return None
         if not find_spec("ziglang"):
             raise BuildError(f"to build for {self.name} by name, a cross compiler is needed; `pip install ziglang`")
-        return (sys.executable, "-m", "ziglang", "cc", "-target", self.target)
+        return (*compiler.ZIG, "-target", self.target)
 
 
 # FMI 2.0 has no folder names for ARM; importers that run there look for FMI 3.0's.
