@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from packaging.version import Version
 
 ROOT = Path(__file__).parents[1]
 
@@ -50,8 +51,26 @@ def test_a_tag_is_the_version_everywhere(checkout):
 
 
 def test_a_commit_without_a_tag_has_a_number_of_its_own(checkout):
-    git(checkout, "tag", "v0.2.0", "HEAD~1")
     assert script("version").main(checkout, checkout) == "0.1.0.dev2"
+
+
+@pytest.mark.parametrize(
+    ("tags", "found"),
+    [
+        ("v0.0.9", "0.1.0.dev2"),
+        ("v0.1.0", "0.1.1.dev2"),
+        ("v0.9.0 v0.10.0", "0.10.1.dev2"),
+        ("v0.2.0rc1", "0.2.0rc2.dev2"),
+        ("v0.1.0rc1", "0.1.0rc2.dev2"),
+        ("v0.2.0.post1", "0.2.1.dev2"),
+        ("v0.2-no-version", "0.1.0.dev2"),
+    ],
+)
+def test_what_comes_after_a_tag_is_above_it(checkout, tags, found):
+    for tag in tags.split():
+        git(checkout, "tag", tag, "HEAD~1")
+    assert script("version").main(checkout, checkout) == found
+    assert all(Version(found) > Version(tag) for tag in tags.split() if "no-version" not in tag)
 
 
 def test_a_tag_without_its_section_is_refused(checkout):
