@@ -7,6 +7,8 @@ import json
 import shutil
 import subprocess
 import sys
+import tarfile
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -123,12 +125,13 @@ PARTS = (
     "README.md",
     "LICENSE",
 )
+KERNEL = "wheelchair_fmu/engine/kernels/x86_64-linux/one.so"
 
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("kind", ["wheel", "sdist"])
 def test_two_builds_are_the_same_bytes(kind, tmp_path):
-    """From two folders whose files have another age, and another order on the disk."""
+    """From two folders whose files have another age, and another order on the disk. A compiled model is no source."""
     pytest.importorskip("build")
     made = []
     for name, parts, copy in (("a", PARTS, shutil.copyfile), ("elsewhere", PARTS[::-1], shutil.copy2)):
@@ -140,8 +143,21 @@ def test_two_builds_are_the_same_bytes(kind, tmp_path):
                 shutil.copytree(ROOT / part, source / part, copy_function=copy, ignore=leave)
             else:
                 copy(ROOT / part, source / part)
+        kernel = source / KERNEL
+        kernel.parent.mkdir(parents=True)
+        kernel.write_text("compiled")
         words = [sys.executable, "-m", "build", f"--{kind}", "--outdir", str(out), str(source)]
         subprocess.run(words, check=True, capture_output=True, cwd=tmp_path)
         (file,) = out.iterdir()
         made.append(file)
     assert made[0].name == made[1].name and made[0].read_bytes() == made[1].read_bytes()
+    assert any(name.endswith(KERNEL) for name in names(made[0])) == (kind == "wheel")
+
+
+def names(archive):
+    """Of the files in a wheel or an sdist."""
+    if archive.suffix == ".whl":
+        with zipfile.ZipFile(archive) as file:
+            return file.namelist()
+    with tarfile.open(archive) as file:
+        return file.getnames()
