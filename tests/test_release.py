@@ -19,7 +19,7 @@ ROOT = Path(__file__).parents[1]
 
 def script(name):
     """A module of `.ci`, which is no package."""
-    spec = importlib.util.spec_from_file_location(f"ci_{name}", ROOT / ".ci" / f"{name}.py")
+    spec = importlib.util.spec_from_file_location(f"ci_{name.replace('/', '_')}", ROOT / ".ci" / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -112,6 +112,18 @@ def test_licences_are_told_in_their_own_words():
     text = script("licences").page()
     for words in ("uPlot 1.", "Leon Sorokin", "yWorks GmbH", "\nnumpy 2", "NumPy Developers", "\npyarrow ", "\nCasADi "):
         assert words.lower() in text.lower(), words
+
+
+def test_cells_of_notebooks_have_the_same_names_in_every_build(monkeypatch):
+    pytest.importorskip("nbclient", reason="`pip install -e '.[site]'` brings what builds the site")
+    from nbformat.v4 import nbbase
+
+    monkeypatch.setattr(nbbase, "random_cell_id", nbbase.random_cell_id)  # put back afterwards
+    named = []
+    for _ in range(2):
+        script("sphinx/conf")
+        named.append([nbbase.new_code_cell().id, nbbase.new_markdown_cell().id])
+    assert named[0] == named[1] and len(set(named[0])) == 2
 
 
 PARTS = (

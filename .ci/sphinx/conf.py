@@ -1,8 +1,10 @@
 """Sphinx: pages in Markdown, and the reference from the docstrings of what `import wheelchair_fmu` has."""
 
 from functools import partialmethod
+from itertools import count
 
 from nbclient import NotebookClient
+from nbformat.v4 import nbbase
 
 from wheelchair_fmu import __version__
 
@@ -32,3 +34,6 @@ nb_execution_timeout = 300
 nb_merge_streams = True
 # What a command prints comes in pieces of a hundred characters, which are joined as they are.
 NotebookClient.__init__ = partialmethod(NotebookClient.__init__, coalesce_streams=True)
+# Names of cells are drawn by chance, and are in the notebooks that readers take with them; two builds are to give the same.
+numbers = count(1)
+nbbase.random_cell_id = lambda: f"cell-{next(numbers)}"
