@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import hashlib
 import importlib.util
 import json
+import re
 import shutil
 import subprocess
 import sys
 import tarfile
 import zipfile
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -88,29 +91,110 @@ def test_two_tags_are_refused(checkout):
         script("version").main(checkout, checkout)
 
 
-def test_every_script_that_comes_along_is_in_the_list_of_components_with_its_licence(tmp_path):
-    licences, sbom = script("licences"), tmp_path / "sbom.json"
-    needed = {"name": "numpy", "version": "2", "bom-ref": "numpy"}
-    sbom.write_text(json.dumps({"metadata": {"component": {"name": "wheelchair-fmu"}}, "components": [needed]}))
-    licences.add(sbom, "0.2.0")
+@pytest.fixture
+def listed(tmp_path):
+    """The list of components of a release that needs numpy, and what it is made from."""
+    licences, sbom, wheel, installed = (script("licences"), *(tmp_path / n for n in ("sbom.json", "one.whl", "pip.json")))
+    pytest.importorskip(licences.ZIG)
+    wheel.write_text("a wheel")
+    found = {"metadata": {"name": "NumPy"}, "download_info": {"archive_info": {"hashes": {"sha256": "1" * 64}}}}
+    elsewhere = {"metadata": {"name": "local"}, "download_info": {"dir_info": {}}}  # what has no archive
+    installed.write_text(json.dumps({"install": [found, elsewhere]}))
+    packages = [(name, f"{name}==2") for name in ("numpy", "local", "pip")]
+    needed = [{"type": "library", "name": n, "version": "2", "bom-ref": ref, "purl": f"pkg:pypi/{n}@2"} for n, ref in packages]
+    root = {"type": "application", "name": "wheelchair-fmu", "bom-ref": "root"}
+    dependencies = [{"ref": "root", "dependsOn": ["numpy==2"]}, {"ref": "numpy==2", "dependsOn": ["pip==2"]}, {"ref": "pip==2"}]
+    content = {"bomFormat": "CycloneDX", "specVersion": "1.6", "metadata": {"component": root}}
+    sbom.write_text(json.dumps({**content, "components": needed, "dependencies": dependencies}))
+    return licences, sbom, wheel, [installed]
+
+
+def test_every_script_that_comes_along_is_in_the_list_of_components_with_its_licence(listed):
+    licences, sbom, wheel, installed = listed
+    licences.add(sbom, "0.2.0", wheel, installed)
     once = sbom.read_text()
-    licences.add(sbom, "0.2.0")
+    licences.add(sbom, "0.2.0", wheel, installed)
     assert sbom.read_text() == once
-    content = json.loads(once)
-    assert content["metadata"]["component"] == {"name": "wheelchair-fmu", "version": "0.2.0"}
+    content = {c["bom-ref"]: c for c in json.loads(once)["components"]}
     files = {f.name for f in licences.VENDOR.glob("*.js")}
-    added = content["components"][1:]
-    assert content["components"][0] == needed and len(added) == len(files)
-    for one in added:
-        short = one["bom-ref"].removeprefix("vendored-")
-        assert any(file.startswith(f"{short}-{one['version']}.") for file in files)
+    added = {ref.removeprefix("vendored-"): c for ref, c in content.items() if ref.startswith("vendored-")}
+    assert len(added) == len(files)
+    for short, one in added.items():
+        (file,) = (licences.VENDOR / f for f in files if f.startswith(f"{short}-{one['version']}."))
+        assert one["hashes"] == [{"alg": "SHA-256", "content": hashlib.sha256(file.read_bytes()).hexdigest()}]
         assert one["licenses"] == [{"license": {"id": "MIT"}}]
         assert "free of charge" in (licences.VENDOR / f"{short}-LICENSE.txt").read_text()  # which is that licence's
+    inside = {c["name"]: c for c in added["jspdf"]["components"]}
+    assert inside["pako"]["purl"] == "pkg:npm/pako@2.1.0"
+    assert inside["pako"]["licenses"] == [{"expression": "MIT AND Zlib"}]
+
+
+def test_the_list_of_components_has_digests_and_what_the_compiler_links_in(listed):
+    licences, sbom, wheel, installed = listed
+    licences.add(sbom, "0.2.0", wheel, installed)
+    content = json.loads(sbom.read_text())
+    root, known = content["metadata"]["component"], {c["bom-ref"]: c for c in content["components"]}
+    assert root["version"] == "0.2.0"
+    assert root["hashes"] == [{"alg": "SHA-256", "content": hashlib.sha256(b"a wheel").hexdigest()}]
+    assert known["numpy==2"]["hashes"] == [{"alg": "SHA-256", "content": "1" * 64}]
+    assert "hashes" not in known["local==2"]
+    assert known["ziglang"]["version"] == metadata.version("ziglang")
+    assert {c["name"] for c in known["ziglang"]["components"]} >= {"mingw-w64", "wasi-libc"}
+    assert "pip==2" not in known  # neither in the release nor needed by it
+    relations = {r["ref"]: r.get("dependsOn", []) for r in content["dependencies"]}
+    assert relations["numpy==2"] == [] and set(relations["root"]) == {"numpy==2", "ziglang"} | {
+        ref for ref in known if ref.startswith("vendored-")
+    }
+
+
+def test_the_list_of_components_keeps_its_schema(listed):
+    pytest.importorskip("cyclonedx", reason="`pip install -e '.[release]'` brings what validates it")
+    licences, sbom, wheel, installed = listed
+    licences.add(sbom, "0.2.0", wheel, installed)
+    script("validate").main(sbom)
+    content = json.loads(sbom.read_text())
+    content["components"][0]["hashes"][0]["content"] = "no digest"
+    sbom.write_text(json.dumps(content))
+    with pytest.raises(SystemExit, match="no digest"):
+        script("validate").main(sbom)
+
+
+def test_what_is_inside_others_is_told_by_their_own_words():
+    licences = script("licences")
+    for one in licences.INSIDE["script"]:
+        assert one["said"] in licences.script(one["of"]).read_text("utf-8"), one["name"]
+    zig = pytest.importorskip(licences.ZIG)
+    for one in licences.INSIDE["runtime"]:
+        assert one["said"] in (Path(zig.__file__).parent / one["file"]).read_text("utf-8"), one["name"]
+
+
+# Words of comments with licences that are the script's own, by its contributors.
+OWN = ("jsPDF", "Steven Spungin", "Aras Abbasi", "Owen Leong", "Youssef Beddad", "Eduardo Menezes", "Antti Palola", "uPlot")
+BARE = re.compile(r"@license|Licensed under the MIT License\.|http://opensource\.org/licenses/mit-license|[\s*/]")
+
+
+def test_no_licence_in_a_script_is_left_out():
+    licences = script("licences")
+    for short in licences.vendored():
+        text = licences.script(short).read_text("utf-8")
+        told = [one["said"] for one in licences.INSIDE["script"] if one["of"] == short]
+        for comment in re.findall(r"/\*[*!].*?\*/", text, re.DOTALL):
+            assert not BARE.sub("", comment) or any(words in comment for words in (*told, *OWN)), comment
 
 
 def test_licences_are_told_in_their_own_words():
     text = script("licences").page()
-    for words in ("uPlot 1.", "Leon Sorokin", "yWorks GmbH", "\nnumpy 2", "NumPy Developers", "\npyarrow ", "\nCasADi "):
+    inside = ("pako, inside jsPDF", "deanm/omggif")
+    for words in (
+        *inside,
+        "uPlot 1.",
+        "Leon Sorokin",
+        "yWorks GmbH",
+        "\nnumpy 2",
+        "NumPy Developers",
+        "\npyarrow ",
+        "\nCasADi ",
+    ):
         assert words.lower() in text.lower(), words
 
 
