@@ -64,7 +64,8 @@ site: setup
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[site]"
 	.ci/site out/site
 
-# The wheel is tried and tested in an empty environment, in another folder. RELEASE_TESTS narrows or widens what is tested.
+# The wheel is tried and tested in an empty environment, in another folder. RELEASE_TESTS narrows or
+# widens what is tested, and RELEASE_TESTS=none leaves the tests out.
 release: setup
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[release]"
 	.ci/release dist/release

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -247,13 +248,64 @@ def test_two_builds_are_the_same_bytes(kind, tmp_path):
         (file,) = out.iterdir()
         made.append(file)
     assert made[0].name == made[1].name and made[0].read_bytes() == made[1].read_bytes()
-    assert any(name.endswith(KERNEL) for name in names(made[0])) == (kind == "wheel")
+    assert any(name.endswith(KERNEL) for name in contents(made[0])) == (kind == "wheel")
 
 
-def names(archive):
-    """Of the files in a wheel or an sdist."""
-    if archive.suffix == ".whl":
+@pytest.mark.nightly
+def test_two_releases_are_the_same_bytes(tmp_path):
+    """All that `make release` makes of one commit with one tag, in two folders that share nothing that was compiled."""
+    pytest.importorskip("ziglang")
+    if not (ROOT / ".git").exists():
+        pytest.skip("this is no checkout")
+    first, second = tmp_path / "a" / "checkout", tmp_path / "elsewhere" / "checkout-by-another-name"
+    git(tmp_path, "clone", "-q", ROOT, first)
+    changes = first / "CHANGELOG.md"
+    changes.write_text(changes.read_text("utf-8").replace("## [Unreleased]", "## [9.9.9] - 2026-11-25", 1), "utf-8")
+    git(first, "-c", "user.name=n", "-c", "user.email=n@n", "commit", "-q", "-a", "-m", "a release")
+    git(first, "tag", "v9.9.9")
+    git(tmp_path, "clone", "-q", first, second)
+    one, other = (released(place) for place in (first, second))
+    assert {"SHA256SUMS", "sbom.cdx.json", "licences.txt", "Wheelchair.fmu", "documentation.tar.gz"} < set(one)
+    assert sorted(one) == sorted(other)
+    assert [words for name in one for words in differences(one[name], other[name])] == []
+
+
+def released(checkout):
+    """The files of a release from a checkout, by name."""
+    ours = {"PYTHONPATH", "SOURCE_DATE_EPOCH"}
+    own = {"RELEASE_TESTS": "none", "WHEELCHAIR_CACHE": str(checkout / "out" / "cache"), "WHEELCHAIR_CONFIG": os.devnull}
+    environment = {**{k: v for k, v in os.environ.items() if k not in ours}, **own}
+    words = ["make", "release", f"PYTHON={sys.executable}"]
+    done = subprocess.run(words, cwd=checkout, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+    return {file.name: file for file in (checkout / "dist" / "release").iterdir()}
+
+
+def differences(one, other):
+    """In what two files differ: which members, where they are archives."""
+    if one.read_bytes() == other.read_bytes():
+        return []
+    if not (zipfile.is_zipfile(one) or tarfile.is_tarfile(one)):
+        return [one.name]
+    a, b = contents(one), contents(other)
+    return [one.name, *(f"{one.name}: {name}" for name in sorted(a.keys() | b.keys()) if a.get(name) != b.get(name))]
+
+
+def contents(archive):
+    """Digests of the files in a zip or a tar, by name."""
+    if zipfile.is_zipfile(archive):
         with zipfile.ZipFile(archive) as file:
-            return file.namelist()
+            return {name: hashlib.sha256(file.read(name)).hexdigest() for name in file.namelist()}
     with tarfile.open(archive) as file:
-        return file.getnames()
+        return {m.name: hashlib.sha256(file.extractfile(m).read()).hexdigest() for m in file.getmembers() if m.isfile()}
+
+
+def test_where_two_archives_differ_is_said(tmp_path):
+    made = []
+    for name, text in (("one", "1"), ("other", "2")):
+        (tmp_path / name).mkdir()
+        made.append(tmp_path / name / "a.zip")
+        with zipfile.ZipFile(made[-1], "w") as file:
+            file.writestr("same", "")
+            file.writestr("number", text)
+    assert differences(*made) == ["a.zip", "a.zip: number"] and differences(made[0], made[0]) == []
