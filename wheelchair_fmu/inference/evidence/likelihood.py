@@ -23,6 +23,7 @@ from ...model.variant import Variant
 from ...quantities import Parameter
 from ..parallel import parallel_map
 from .evidence import Begin, Evidence, RunEvidence, begins_of, followed
+from .flipping import may_swing_round
 from .initial_state import CASTERS, prior_start, start_sd, starts_of, uncertain
 from .local import BaselineError, ClockError, Local, Marginal, felt, locals_of, rate_of, read
 from .noise_model import ALONG, FORCED, MOMENT, NoiseModel, disturbance, noise_of, pushes_of
@@ -72,6 +73,7 @@ class Likelihood:
         self._inputs = [i.name for i in self.sensitivities.model.inputs]
         self._yawing = [s.name for s in self.sensitivities.model.states].index("psi_dot")
         self._recordings: dict[tuple[str, bool], tuple[Run, NoiseModel, Recording]] = {}
+        self._swinging: dict[str, tuple[Run, bool]] = {}
         self._evaluator = Evaluator(self.sensitivities, TOLERANCE)
         self._delays = {f"effect.{e.id}.{p.name}" for e in variant.catalogue.values() if e.delays_record for p in e.parameters}
 
@@ -212,7 +214,7 @@ class Likelihood:
             found = self._evaluated(run, values, by, found.start, found.path, 0) if by else found
         else:
             pushed = self._errors_of_pushes(run)
-            found = self._evaluated(run, values, by, at, None, rounds, pushed, self.may_flip and rounds > 0)
+            found = self._evaluated(run, values, by, at, None, rounds, pushed, rounds > 0 and self._flips(run))
             if found.pushed is not None and found.pushed is not pushed:
                 begins = replace(begins, path=found.pushed)
             if not np.array_equal(found.start, at):
@@ -221,15 +223,24 @@ class Likelihood:
 
     @property
     def may_flip(self) -> bool:
-        """May casters swing round, on a run that no other forces lead? While a chair backs up, they stand as pencils on their
+        """May casters swing round in some run?"""
+        return any(map(self._flips, self.campaign.runs))
+
+    def _flips(self, run: Run) -> bool:
+        """May they in this one, which no other forces lead? While a chair backs up, they stand as pencils on their
         tips: noise of the pushes decides when they swing, and so where the chair goes. Slopes about any other path than its own
         say little of it, so all is linearised about the likeliest errors of the pushes, which are kept for the next values."""
-        return not self.leads and all(name in self.start_names for name in CASTERS)
+        if self.leads or not all(name in self.start_names for name in CASTERS):
+            return False
+        known = self._swinging.get(run.name)
+        if known is None or known[0] is not run:
+            known = self._swinging[run.name] = run, may_swing_round(run, self.known(run))
+        return known[1]
 
     def _errors_of_pushes(self, run: Run) -> np.ndarray | None:
         """As they were found, (n, nq), for a model whose casters may flip."""
         found = self.begins[run.name].path
-        return found if self.may_flip and found is not None and len(found) == len(run.time) else None
+        return found if found is not None and len(found) == len(run.time) and self._flips(run) else None
 
     def _evaluated(
         self,

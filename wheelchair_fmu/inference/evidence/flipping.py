@@ -1,0 +1,60 @@
+"""Whether casters may swing round in a run: whether a pivot moves against the way that its wheel points.
+
+A caster that trails comes to heel, and whatever disturbs it dies out over a way of its trail. One that leads, as where a chair
+backs up, or turns on the spot and back, stands as a pencil on its tip: what disturbs it grows by e over each such way, until
+it has swung round.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import atan, exp, pi, remainder, tan, tau
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from ...campaign import Run
+from ...campaign.channels import SIDES
+from ...model.chassis import DEFAULTS
+from .initial_state import CASTERS, TRAIL
+
+SMOOTH = 0.1  # s over which speeds are taken
+ROLLS = 0.05  # m/s: a pivot that is slower goes no way that sensors tell
+LEADS = pi / 2  # rad by which a pivot's way is off the way that its wheel points, from which on the caster leads
+
+
+def may_swing_round(run: Run, known: Mapping[str, float]) -> bool:
+    """By the wheels' speeds and what is `known` of the chair and of how its casters start, which is as they stand in a chair
+    that has rolled forward, if nobody says otherwise. So may those of a run that does not tell the speed of each wheel."""
+    if not set(SIDES) <= set(run.channels):
+        return True
+    left, right = (_smooth(run, side) for side in SIDES)
+    a, b, t_r, t_f = (known.get(n, DEFAULTS[n]) for n in ("chair.a", "chair.b", "chair.t_r", "chair.t_f"))
+    u, r, dt = (left + right) / 2, (left - right) / t_r, np.gradient(run.time)
+    starts = [known.get(name, 0.0) for name in CASTERS]
+    pivots = zip((1, -1), starts, strict=True)
+    return any(_most_off(u + side * r * t_f / 2, (a + b) * r, r, dt, start) > LEADS for side, start in pivots)
+
+
+def _most_off(ahead: np.ndarray, aside: np.ndarray, r: np.ndarray, dt: np.ndarray, start: float) -> float:
+    """The most (rad) by which the way of a pivot, which moves `ahead` and `aside` (n,) in a chair that turns by r (n,), is off
+    the way that its wheel points, which is `start` at first. It rolls without slip, c δ' = v sin φ − c r, with φ from where it
+    points to where its pivot goes."""
+    speeds, turns = np.hypot(ahead, aside), r * dt
+    points, most = start, 0.0
+    moments = zip(
+        np.arctan2(aside, ahead).tolist(), speeds.tolist(), (speeds * dt / TRAIL).tolist(), turns.tolist(), strict=True
+    )
+    for towards, speed, way, turn in moments:
+        off = remainder(towards - points, tau)
+        if speed > ROLLS:
+            most = max(most, abs(off))
+        points = towards - 2 * atan(tan(off / 2) * exp(-way)) - turn
+    return most
+
+
+def _smooth(run: Run, channel: str) -> np.ndarray:
+    """A channel (n,) at all times of a run, over SMOOTH."""
+    read = np.isfinite(run.channels[channel])
+    whole = np.interp(run.time, run.time[read], run.channels[channel][read]) if read.any() else np.zeros(len(run.time))
+    return uniform_filter1d(whole, max(1, round(SMOOTH / float(np.median(np.diff(run.time))))))
