@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import re
 import shutil
 import tomllib
 from pathlib import Path
+from weakref import ref
 
 import pytest
 from typer.testing import CliRunner
 
 from tests.kit import with_settings
+from wheelchair_fmu.api.comparing import compared
 from wheelchair_fmu.campaign import condensed, read
+from wheelchair_fmu.cli import compare
 from wheelchair_fmu.cli.main import app
+from wheelchair_fmu.cli.settings import subject
 from wheelchair_fmu.cli.staircase import staircase_table
 from wheelchair_fmu.inference.decision.among_forces import FORCES
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
@@ -35,6 +40,26 @@ def test_compare_says_where_the_error_is():
     assert told["runs"][0].keys() == {"run", "role", "rms"}
     for bins in told["excess"].values():
         assert sum(b["share"] for b in bins) == pytest.approx(1.0)
+
+
+def test_samples_that_are_compared_as_means_are_forgotten_before(monkeypatch):
+    """The recordings of a day would otherwise be in memory as long as anything is compared."""
+    recorded, left = [], []
+
+    def remembered(*words):
+        found = subject(*words)
+        recorded.extend(ref(run) for run in found[1].runs)
+        return found
+
+    def counted(*words, **how):
+        gc.collect()
+        left.extend(run for run in recorded if run() is not None)
+        return compared(*words, **how)
+
+    monkeypatch.setattr(compare, "subject", remembered)
+    monkeypatch.setattr(compare, "compared", counted)
+    assert "is compared as means" in run("compare", SAMPLE).stderr
+    assert recorded and not left
 
 
 def test_json_is_all_that_compare_prints_whatever_it_writes(tmp_path):

@@ -94,7 +94,7 @@ def _through_fmu(
     likelihood = Likelihood(whole, chair, recordings.noise_model)
     outputs = chair.model().outputs
     batches = (parts[i : i + AT_ONCE] for parts in cut.values() for i in range(0, len(parts), AT_ONCE))
-    batch_by_batch = _ahead(likelihood.evidence(batch, values, (), tune_start=TUNING).runs for batch in batches)
+    batch_by_batch = _ahead(likelihood.only(batch).evidence(batch, values, (), tune_start=TUNING).runs for batch in batches)
     evidence = chain.from_iterable(batch_by_batch)
     with Fmu(fmu_of(chair)) as fmu:
         for name, parts in cut.items():

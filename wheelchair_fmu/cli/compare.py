@@ -13,7 +13,7 @@ from rich.table import Table
 
 from ..api import comparisons
 from ..api.comparing import PIECE, Compared, compared
-from ..campaign import DENSE, SPAN, Campaign, pieces
+from ..campaign import DENSE, SPAN, Campaign, condensed, pieces
 from ..inference.estimation.statistics import finite
 from ..inference.residual.physical import as_json as physical
 from ..report.saving import save
@@ -43,6 +43,7 @@ def compare(
 ) -> None:
     """Simulate every run through the FMU by fmpy, and give the whitened RMS error: 1.0 is the noise floor."""
     chair, measured, _ = subject(campaign, variant, effects, settings)
+    measured = condensed(measured)  # here already, so that the samples themselves are not kept in memory
     names = [n.strip() for n in calibrate.split(",") if n.strip()]
     with working("calibrating" if names else "simulating", lines=progress) as say:
         found = compared(measured, chair, names, say, brief=not output)

@@ -443,8 +443,12 @@ class Likelihood:
         other = self._with(campaign=campaign, leads=True)
         return other.begun({r.name: Begin(other.expected_start(r)) for r in campaign.runs})
 
+    def only(self, runs: Iterable[Run]) -> Likelihood:
+        """The same on some runs of its campaign, with a memory of its own: what it makes of them is forgotten with it."""
+        return self._with(campaign=replace(self.campaign, runs=tuple(runs)), _recordings={})
+
     def _with(self, **changed: object) -> Likelihood:
-        """The same but for these attributes: what was compiled and recorded is shared."""
+        """The same but for these attributes: what was compiled and recorded is shared, unless it is among them."""
         other = object.__new__(Likelihood)
         other.__dict__ = {**self.__dict__, **changed}
         return other

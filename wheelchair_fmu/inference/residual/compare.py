@@ -88,7 +88,8 @@ def errors_of(
     `outputs`."""
     there = evidence.predicted if predicted is None else evidence.on_rows(predicted)
     names = [o.name for o in outputs]
-    where = {name: evidence.results[:, names.index(output)] for name, output in regimes.items()}
+    # Copies: a view would keep all results of the run in memory.
+    where = {name: evidence.results[:, names.index(output)].copy() for name, output in regimes.items()}
     pushes = [v for name, v in evidence.run.inputs.items() if name.startswith("push.")]
     if pushes:
         where["push"] = np.sum(pushes, axis=0)
