@@ -47,6 +47,14 @@ def test_again_is_the_evidence_itself_where_nothing_moved(short):
     assert again.rms == pytest.approx(here.rms, rel=1e-9)
 
 
+def test_a_filter_is_all_that_it_keeps_of_an_evaluation(short):
+    """What lies between its arrays would otherwise stay in memory as long as they do, for every model that a search fits."""
+    (evidence,) = Likelihood(short, Variant()).evidence(short.runs[:1], {}, ["chair.m"]).runs
+    whitener = evidence.filter.whitener
+    kept = [*whitener.arrays.values(), whitener._gain, whitener._scale]
+    assert all(array.base is None or array.base.nbytes == array.nbytes for array in kept)
+
+
 def test_position_is_judged_by_what_each_reading_adds(short):
     """A chair as modelled, whose pushes were recorded with noise: wherever it drifts to, its whitened error is one."""
     rng, runs = np.random.default_rng(1), []

@@ -299,7 +299,7 @@ class _Place:
         return status
 
     def evaluation(self) -> Evaluation:
-        """Copies of what is told, each to be forgotten by itself, and the filter where it lies."""
+        """Copies of what is told, and of the filter, each to be forgotten by itself: the rest is needed no more."""
         n, nz, u = self.n, self.nz, len(self.run.starts) + self.l
 
         def told(name: str, *shape: int, of: str = "") -> np.ndarray:
@@ -324,11 +324,11 @@ class _Place:
         n, nz, nx, nq = self.n, self.nz, self.nx, len(self.run.pushes) + self.nd
         shapes = {"B": (n - 1, nx, nq), "C": (n - 1, nx, nq), "H": (n, nz, nx), "D": (n, nz, nq), "input_sd": (n, nq)}
         shapes |= {"input_phi": (n - 1, nq), "phi": (n - 1, nz), "start_cov": (nx, nx), "common": (nq, nq)}
-        arrays = {name: self.view(name, shape, "f") for name, shape in shapes.items()}
-        arrays["A"] = self.view("transition", (n - 1, nx, nx), "by")
+        arrays = {name: self.view(name, shape, "f").copy() for name, shape in shapes.items()}
+        arrays["A"] = self.view("transition", (n - 1, nx, nx), "by").copy()
         arrays["sd"] = self.given["sd"]
-        flags = self.view("present", (n * nz // 8 + 1,), "f").view(np.int8)[: n * nz].reshape(n, nz)
-        gain, scale = self.view("gain", (n, nz, nx + nq + nz)), self.view("scale", (n, nz))
+        flags = self.view("present", (n * nz // 8 + 1,), "f").view(np.int8)[: n * nz].reshape(n, nz).copy()
+        gain, scale = self.view("gain", (n, nz, nx + nq + nz)).copy(), self.view("scale", (n, nz)).copy()
         logdet = float(self.view("told", (2,))[0])
         present, noise = np.isfinite(self.run.readings), replace(self.run.noise, start=arrays["start_cov"])
         return Whitener.of(
