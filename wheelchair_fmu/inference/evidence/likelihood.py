@@ -445,7 +445,7 @@ class Likelihood:
 
     def only(self, runs: Iterable[Run]) -> Likelihood:
         """The same on some runs of its campaign, with a memory of its own: what it makes of them is forgotten with it."""
-        return self._with(campaign=replace(self.campaign, runs=tuple(runs)), _recordings={})
+        return self._with(campaign=replace(self.campaign, runs=tuple(runs)), _recordings={}, _swinging={})
 
     def _with(self, **changed: object) -> Likelihood:
         """The same but for these attributes: what was compiled and recorded is shared, unless it is among them."""
