@@ -116,11 +116,12 @@ def test_a_start_that_a_run_sets_stands(short):
 
 
 def test_errors_of_pushes_act_as_pushes_do_and_are_no_part_of_what_is_foretold(short):
-    """Where casters may swing round, a run is linearised about them."""
+    """Where casters may swing round, a run is linearised about them. Whether they do in this one, nobody can tell."""
     run, chair = short.fit[0], Variant(Choice(caster="slipping"))
+    run = replace(run, channels={name: read for name, read in run.channels.items() if not name.startswith("wheel_speed")})
     names = pushes_of(run)
     pushed = 0.5 * np.sin(np.outer(run.time, 1 + np.arange(len(names))))
-    likelihood = Likelihood(short, chair, columns=())
+    likelihood = Likelihood(replace(short, runs=(run,)), chair, columns=())
     (recorded,) = likelihood.evidence([run], {}).runs
     (e,) = likelihood.begun({run.name: Begin(path=pushed)}).evidence([run], {}).runs
     true = replace(run, inputs={**run.inputs, **{n: run.inputs[n] + pushed[:, i] for i, n in enumerate(names)}})
