@@ -96,6 +96,7 @@ def test_a_campaign_that_is_there_stays_unless_forced(raw, tmp_path):
         (["--wheelbase", "0.4", "--cm-ahead", "0.4"], "beyond the casters' pivots"),
         (["--caster-trail", "5"], "no size of a wheelchair"),
         (["--wheel-inertia", "12"], "no size of a wheelchair"),
+        (["--mass", "8.5"], "mass of chair and rider, kg); give one from 10 to 400"),
         (["--axes", "ISO"], "no axes"),
         (["--holdout", "run9"], "no run 'run9'"),
     ],
@@ -128,7 +129,7 @@ def test_at_a_terminal_it_asks_what_no_signal_tells(raw, tmp_path, monkeypatch):
     monkeypatch.setattr("wheelchair_fmu.cli.import_._at_terminal", lambda: True)
     words = ["import", *map(str, sorted(raw.glob("run01*"))), "-o", str(tmp_path), "--track", "0.5"]
     done = CliRunner().invoke(app, words, input="x\n88,5\n\n0,44\n0.1\n\n5\n0.05\n\n")
-    assert done.exit_code == 0 and "give a number below 0.3" in done.output, done.output
+    assert done.exit_code == 0 and "give a number from 0.001 to 0.3" in done.output, done.output
     content = tomllib.loads((tmp_path / "campaign.toml").read_text(encoding="utf-8"))
     assert content["chair"] == {"m": 88.5, "a": 0.34, "b": 0.1, "t_r": 0.5} and content["wheel"] == {}
     assert "rider alone" not in done.output, "no marker is on a body"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import time
 from io import BytesIO
 from math import radians, tanh
@@ -15,7 +16,9 @@ import pytest
 
 from tests.campaign import lab
 from tests.kit import SAMPLE_DIAGNOSIS, with_settings
+from wheelchair_fmu.campaign.importing import BOUNDS
 from wheelchair_fmu.model.effects import bundled
+from wheelchair_fmu.report.page import asset
 from wheelchair_fmu.workbench.jobs import printed_json
 
 TestClient = pytest.importorskip("starlette.testclient", reason="the workbench's libraries are not installed").TestClient
@@ -409,3 +412,8 @@ def test_a_wrong_value_is_told_with_its_place(client):
     content |= {"chair": {"m": "heavy"}, "noise": {"yaw_rate": -1}, "prior": {"chair": {"I_z": 0}}}
     faults = client.put(f"{client.base}/campaign", json=content).json()["faults"]
     assert {f["at"] for f in faults if f["severity"] == "error"} == {"chair.m", "noise.yaw_rate", "prior.chair.I_z"}
+
+
+def test_the_page_asks_for_sizes_within_the_bounds_of_import():
+    fields = re.findall(r'<input name="(\w+)"[^>]* data-least="([^"]+)" data-most="([^"]+)"', asset("workbench.html"))
+    assert {name: (float(least), float(most)) for name, least, most in fields} == BOUNDS

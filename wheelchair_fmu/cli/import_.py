@@ -19,6 +19,7 @@ from ..campaign.axes import AXES
 from ..campaign.document import FILE
 from ..campaign.formats import format_of
 from ..campaign.importing import (
+    BOUNDS,
     RADIUS,
     SIZES,
     Choice,
@@ -47,9 +48,6 @@ from .files import print_json
 from .group import Progress, console, working
 from .sync import show
 
-MOST_OF = {"radius": 1.0, "track": 2.0, "wheelbase": 2.0, "cm_ahead": 2.0, "caster_track": 2.0, "caster_trail": 0.3}
-MOST_OF |= {"wheel_inertia": 2.0}  # in the unit of `SIZES`, beyond which a size is no wheelchair's, but of another unit
-MOST_OF_ANY = 1000.0
 RUNS = "runs"  # the folder of a campaign in which the recordings lie
 
 
@@ -141,10 +139,11 @@ def _usable(output: Path, axes: str, force: bool, sizes: Mapping[str, float | No
     if axes and axes not in AXES:
         raise UsageError(f"no axes {axes!r}; use {' or '.join(AXES)}")
     for name, value in sizes.items():
-        if value is not None and not 0 < value < _most(name):
+        least, most = BOUNDS[name]
+        if value is not None and not least <= value <= most:
             option = f"--{name.replace('_', '-')}"
             raise UsageError(
-                f"{option} {value:g} is no size of a wheelchair ({SIZES[name]}); give more than 0 and less than {_most(name):g}"
+                f"{option} {value:g} is no size of a wheelchair ({SIZES[name]}); give one from {least:g} to {most:g}"
             )
     wheelbase, ahead = sizes["wheelbase"], sizes["cm_ahead"]
     if wheelbase is not None and ahead is not None and ahead >= wheelbase:
@@ -163,7 +162,7 @@ def _asked(wanted: Wanted, found: Found) -> Wanted:
     body = any(plan.body for plan in found.plans)
     asked = {name: words for name, words in SIZES.items() if getattr(wanted, name) is None and (body or name != "person")}
     answers: dict[str, Any] = {
-        name: answer for name, words in asked.items() if (answer := _number(words, _most(name))) is not None
+        name: answer for name, words in asked.items() if (answer := _number(words, *BOUNDS[name])) is not None
     }
     axes = wanted.axes
     if not axes and open_axes(found.plans):
@@ -202,19 +201,15 @@ def _unit(device: str, choice: Choice) -> Choice:
     return choice
 
 
-def _most(size: str) -> float:
-    return MOST_OF.get(size, MOST_OF_ANY)
-
-
-def _number(words: str, most: float) -> float | None:
+def _number(words: str, least: float, most: float) -> float | None:
     while True:
         answer = typer.prompt(f"{words} (empty: fill in later)", default="", show_default=False, err=True).strip()
         try:
-            if not answer or 0 < float(answer.replace(",", ".")) < most:
+            if not answer or least <= float(answer.replace(",", ".")) <= most:
                 return float(answer.replace(",", ".")) if answer else None
         except ValueError:
             pass  # asked again
-        console(stderr=True).print(f"{answer!r} is no such size; give a number below {most:g}")
+        console(stderr=True).print(f"{answer!r} is no such size; give a number from {least:g} to {most:g}")
 
 
 def _placed(found: Found, output: Path, link: bool) -> dict[str, dict[str, str]]:

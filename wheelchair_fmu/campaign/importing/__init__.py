@@ -27,9 +27,10 @@ from .deciding import RADIUS, decide
 from .gathering import opened, sources
 from .taking import taken
 from .unsure import Unsure, doubts, unsure
-from .writing import SIZES, Wanted, axes_of, needs_radius, open_axes, text
+from .writing import BOUNDS, SIZES, Wanted, axes_of, needs_radius, open_axes, text
 
 __all__ = [
+    "BOUNDS",
     "RADIUS",
     "SIZES",
     "Choice",

@@ -74,6 +74,17 @@ SIZES = {  # of a chair, as they are asked for: what no file tells
     "caster_trail": "trail of the casters, from the pivot back to where the caster stands, m",
     "wheel_inertia": "moment of inertia of one rear wheel with its rim about the axle, kg m2",
 }
+BOUNDS = {  # in these units: a size beyond is no wheelchair's, but of another unit
+    "mass": (10.0, 400.0),
+    "person": (5.0, 350.0),
+    "radius": (0.05, 1.0),
+    "track": (0.1, 2.0),
+    "wheelbase": (0.1, 2.0),
+    "cm_ahead": (0.001, 2.0),
+    "caster_track": (0.1, 2.0),
+    "caster_trail": (0.001, 0.3),
+    "wheel_inertia": (0.001, 2.0),
+}
 CHAIR = (
     ("m", "mass", "chair and rider, kg"),
     ("a", "pivots_ahead", "from the centre of mass forward to the casters' pivots, m"),
