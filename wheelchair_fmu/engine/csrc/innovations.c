@@ -37,9 +37,9 @@ static int lasts(const filter *f, long n) {
     return 0;
 }
 
-/* The inputs that ever have noise, and the size of s with these alone. */
+/* The inputs that ever have noise, whether these are all, and the size of s with these alone. */
 typedef struct {
-    int n, which[WC_MOST], lasting, size; /* is the readings' own noise in it? */
+    int n, which[WC_MOST], all, lasting, size; /* is the readings' own noise in it? */
 } acting;
 
 static acting acting_of(const filter *f, long n) {
@@ -49,6 +49,7 @@ static acting acting_of(const filter *f, long n) {
         for (long i = 0; silent && i < n; i++) silent = f->input_sd[i * f->nq + q] == 0;
         if (!silent) a.which[a.n++] = q;
     }
+    a.all = a.n == f->nq;
     a.lasting = lasts(f, n);
     a.size = f->nx + a.n + (a.lasting ? f->nz : 0);
     return a;
@@ -56,13 +57,28 @@ static acting acting_of(const filter *f, long n) {
 
 /* Of a row of all inputs, what belongs to those that act. */
 static inline void take(const acting *a, const double *row, double *to) {
-    for (int q = 0; q < a->n; q++) to[q] = row[a->which[q]];
+    if (a->all) memcpy(to, row, sizeof(double) * (size_t)a->n);
+    else for (int q = 0; q < a->n; q++) to[q] = row[a->which[q]];
+}
+
+/* The same where it lies, or in `room`. */
+static inline const double *taken(const acting *a, const double *row, double *room) {
+    if (a->all) return row;
+    take(a, row, room);
+    return room;
 }
 
 /* Where element k of s stands among all of them. */
 static inline int place(const filter *f, const acting *a, int k) {
     int own = f->nx + a->n;
     return k < f->nx ? k : k < own ? f->nx + a->which[k - f->nx] : k - own + f->nx + f->nq;
+}
+
+/* The gains of what is in s, of all, where they lie, or in `room`. */
+static inline const double *gains(const filter *f, const acting *a, const double *all, double *room) {
+    if (a->all) return all;
+    for (int r = 0; r < a->size; r++) room[r] = all[place(f, a, r)];
+    return room;
 }
 
 /* Of all of s but the states, the share that stays from sample i to i+1. */
@@ -162,8 +178,8 @@ static void predict(const filter *f, long i, covariance *c) {
 static double expect(const filter *f, long i, int z, const covariance *c, double *Ph) {
     int stride = c->stride, nx = f->nx, nq = c->a.n, own = nx + nq + z;
     const double *H = f->H + (i * f->nz + z) * nx;
-    double D[WC_MOST];
-    take(&c->a, f->D + (i * f->nz + z) * f->nq, D);
+    double room[WC_MOST];
+    const double *D = taken(&c->a, f->D + (i * f->nz + z) * f->nq, room);
     if (c->a.lasting) memcpy(Ph, c->P + own * stride, sizeof(double) * (size_t)stride);
     else memset(Ph, 0, sizeof(double) * (size_t)stride);
     add_rows(stride, 1, &(weighed_rows){nx, c->P, stride, H, 1}, Ph);
@@ -220,12 +236,12 @@ static void carry(const filter *f, const acting *a, long i, const double *S, dou
 /* What is new in a reading of these signals, given s, which it then corrects. */
 static void correct(const filter *f, const acting *a, long at, const double *gain, double *S, double *signal, int stride) {
     int nx = f->nx, nq = a->n, own = nx + nq + (int)(at % f->nz);
-    double D[WC_MOST];
-    take(a, f->D + at * f->nq, D);
+    double room[2][WC_MOST];
+    const double *D = taken(a, f->D + at * f->nq, room[0]), *K = gains(f, a, gain, room[1]);
     add_rows(stride, -1, &(weighed_rows){nx, S, stride, f->H + at * nx, 1}, signal);
     add_rows(stride, -1, &(weighed_rows){nq, S + nx * stride, stride, D, 1}, signal);
     if (a->lasting) add_row_of(stride, -1, S + own * stride, signal);
-    for (int r = 0; r < a->size; r++) add_row_of(stride, gain[place(f, a, r)], signal, S + r * stride);
+    for (int r = 0; r < a->size; r++) add_row_of(stride, K[r], signal, S + r * stride);
 }
 
 /* Whitens `some` of the m signals, the first of which is `signals`; start_mean is of this one, if it is the first of all. */
@@ -258,14 +274,15 @@ static void whiten(const filter *f, const acting *a, long n, const double *gain,
 /* s of one signal, one sample on. */
 static void carry_one(const filter *f, const acting *a, long i, const double *s, double *next) {
     int nx = f->nx, nq = a->n;
-    double stays[WC_MOST];
+    double stays[WC_MOST], room[2][WC_MOST];
     find_stays(f, a, i, stays);
     for (int k = nx; k < a->size; k++) next[k] = stays[k - nx] * s[k];
     for (int r = 0; r < nx; r++) {
-        const double *A = f->A + (i * nx + r) * nx, *B = f->B + (i * nx + r) * f->nq, *C = f->C + (i * nx + r) * f->nq;
+        const double *A = f->A + (i * nx + r) * nx, *B = taken(a, f->B + (i * nx + r) * f->nq, room[0]);
+        const double *C = taken(a, f->C + (i * nx + r) * f->nq, room[1]);
         double sum = 0;
         for (int k = 0; k < nx; k++) sum += A[k] * s[k];
-        for (int q = 0; q < nq; q++) sum += B[a->which[q]] * s[nx + q] + C[a->which[q]] * next[nx + q];
+        for (int q = 0; q < nq; q++) sum += B[q] * s[nx + q] + C[q] * next[nx + q];
         next[r] = sum;
     }
 }
@@ -273,9 +290,10 @@ static void carry_one(const filter *f, const acting *a, long i, const double *s,
 /* What a reading is expected to be. */
 static double expected(const filter *f, const acting *a, long at, const double *s) {
     int nx = f->nx, nq = a->n;
-    double sum = a->lasting ? s[nx + nq + at % f->nz] : 0;
+    double room[WC_MOST], sum = a->lasting ? s[nx + nq + at % f->nz] : 0;
+    const double *D = taken(a, f->D + at * f->nq, room);
     for (int k = 0; k < nx; k++) sum += f->H[at * nx + k] * s[k];
-    for (int q = 0; q < nq; q++) sum += f->D[at * f->nq + a->which[q]] * s[nx + q];
+    for (int q = 0; q < nq; q++) sum += D[q] * s[nx + q];
     return sum;
 }
 
@@ -283,7 +301,7 @@ static double expected(const filter *f, const acting *a, long at, const double *
 static void whiten_one(const filter *f, const acting *a, long n, const double *gain, const double *scale,
                        const double *start_mean, double *signal) {
     int nz = f->nz, all = f->nx + f->nq + nz;
-    double one[WC_MOST] = {0}, other[WC_MOST], *s = one, *next = other;
+    double one[WC_MOST] = {0}, other[WC_MOST], room[WC_MOST], *s = one, *next = other;
     memcpy(s, start_mean, sizeof(double) * (size_t)f->nx);
     for (long i = 0; i < n; i++) {
         if (i) {
@@ -294,7 +312,7 @@ static void whiten_one(const filter *f, const acting *a, long n, const double *g
         }
         for (long at = i * nz; at < (i + 1) * nz; at++) {
             double told = f->present[at] ? signal[at] - expected(f, a, at, s) : 0;
-            for (int r = 0; f->present[at] && r < a->size; r++) s[r] += told * gain[at * all + place(f, a, r)];
+            if (f->present[at]) add_row(a->size, told, gains(f, a, gain + at * all, room), s);
             signal[at] = told * scale[at];
         }
     }
