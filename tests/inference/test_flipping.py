@@ -49,7 +49,15 @@ def test_casters_that_start_turned_round_swing_as_soon_as_the_chair_rolls(sample
     assert may_swing_round(run, {"chair.t_r": T_R, "start.caster_l": 3.0})
 
 
-def test_so_may_those_of_a_run_that_does_not_tell_the_wheels(sample):
+@pytest.mark.parametrize(("parts", "swings"), [((FORWARD, CURVE), False), ((FORWARD, BACK), True), ((RIGHT, LEFT), True)])
+def test_so_do_speed_and_yaw_rate(sample, parts, swings):
+    run = rolling(sample, *parts)
+    left, right = run.channels.values()
+    told = replace(run, channels={"u": (left + right) / 2, "yaw_rate": (left - right) / T_R})
+    assert may_swing_round(told, {}) is swings
+
+
+def test_so_may_those_of_a_run_that_does_not_tell_how_it_rolls(sample):
     run = rolling(sample, FORWARD)
     assert may_swing_round(replace(run, channels={"yaw_rate": np.zeros(len(run.time))}), {"chair.t_r": T_R})
 

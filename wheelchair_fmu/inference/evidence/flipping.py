@@ -24,16 +24,26 @@ LEADS = pi / 2  # rad by which a pivot's way is off the way that its wheel point
 
 
 def may_swing_round(run: Run, known: Mapping[str, float]) -> bool:
-    """By the wheels' speeds and what is `known` of the chair and of how its casters start, which is as they stand in a chair
-    that has rolled forward, if nobody says otherwise. So may those of a run that does not tell the speed of each wheel."""
-    if not set(SIDES) <= set(run.channels):
-        return True
-    left, right = (_smooth(run, side) for side in SIDES)
+    """By how the chair rolls and turns, what is `known` of it, and how its casters start, which is as they stand in a chair
+    that has rolled forward, if nobody says otherwise. So may those of a run that does not tell how it rolls and turns."""
     a, b, t_r, t_f = (known.get(n, DEFAULTS[n]) for n in ("chair.a", "chair.b", "chair.t_r", "chair.t_f"))
-    u, r, dt = (left + right) / 2, (left - right) / t_r, np.gradient(run.time)
+    told = _rolls_and_turns(run, t_r)
+    if told is None:
+        return True
+    (u, r), dt = told, np.gradient(run.time)
     starts = [known.get(name, 0.0) for name in CASTERS]
     pivots = zip((1, -1), starts, strict=True)
     return any(_most_off(u + side * r * t_f / 2, (a + b) * r, r, dt, start) > LEADS for side, start in pivots)
+
+
+def _rolls_and_turns(run: Run, t_r: float) -> tuple[np.ndarray, np.ndarray] | None:
+    """Speed (n,) in m/s and yaw rate (n,) in rad/s, by both wheels, or else as they were measured."""
+    if set(SIDES) <= set(run.channels):
+        left, right = (_smooth(run, side) for side in SIDES)
+        return (left + right) / 2, (left - right) / t_r
+    if {"u", "yaw_rate"} <= set(run.channels):
+        return _smooth(run, "u"), _smooth(run, "yaw_rate")
+    return None
 
 
 def _most_off(ahead: np.ndarray, aside: np.ndarray, r: np.ndarray, dt: np.ndarray, start: float) -> float:
