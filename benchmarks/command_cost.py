@@ -31,18 +31,14 @@ def rows() -> Iterator[Row]:
 
 def seconds(tree: Path) -> list[float]:
     """Of each repeat, by the package and the sample in this tree."""
-    return [ms / 1e3 for ms in timed(lambda: _run(tree, {}), REPEATS)]
+    return [ms / 1e3 for ms in timed(lambda: command(SAMPLE, tree=tree), REPEATS)]
 
 
 def _first(tree: Path) -> float:
     with TemporaryDirectory() as cache:
         began = perf_counter()
-        _run(tree, {"WHEELCHAIR_CACHE": cache})
+        command(SAMPLE, tree=tree, more={"WHEELCHAIR_CACHE": cache})
         return perf_counter() - began
-
-
-def _run(tree: Path, more: dict[str, str]) -> None:
-    command(SAMPLE, tree=tree, more=more)
 
 
 def command(*words: str | Path, tree: Path = ROOT, more: Mapping[str, str] = MappingProxyType({})) -> None:

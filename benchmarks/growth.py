@@ -17,7 +17,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from wheelchair_fmu.campaign import Campaign, Run, read
-from wheelchair_fmu.inference.estimation.fit import fit, start_value
+from wheelchair_fmu.inference.estimation.fit import fit, start_values
 from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.models.factory import ModelFactory
 from wheelchair_fmu.inference.models.hypothesis import Model
@@ -128,7 +128,7 @@ def _fitted(measured: Campaign) -> tuple[Models, Model]:
     """Models that are compiled, and the calibrated one."""
     models = Models.of(ModelFactory(measured, Variant()))
     likelihood, names = models.likelihood(), models.names(())
-    start = {n: start_value(likelihood, likelihood.records[n]) for n in names}
+    start = start_values(likelihood, names)
     base = Model((), fit(likelihood, names, start), Evidence((), ()))
     screen(models, base)
     return models, base

@@ -12,7 +12,7 @@ from typing import TypeVar
 from ..campaign import Campaign, condensed, pieces, windows
 from ..errors import UsageError, unknown
 from ..inference.estimation.calibration import Calibrated, calibration, doubts
-from ..inference.estimation.fit import fit, start_value
+from ..inference.estimation.fit import fit, start_values
 from ..inference.evidence.initial_state import TUNING
 from ..inference.evidence.likelihood import Likelihood
 from ..inference.residual.compare import Comparison, RunErrors, errors_of, together
@@ -80,7 +80,7 @@ def _calibrated(recordings: Taken, chair: Variant, names: Sequence[str]) -> tupl
     wanted = [*names, *likelihood.offsets]  # sensors' offsets, where the campaign names them, are nobody's error
     if not wanted:
         return {}, ()
-    found = fit(likelihood, wanted, {n: start_value(likelihood, likelihood.records[n]) for n in wanted})
+    found = fit(likelihood, wanted, start_values(likelihood, wanted))
     return found.values, calibration(likelihood, found)
 
 

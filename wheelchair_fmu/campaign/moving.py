@@ -40,6 +40,13 @@ def pace(run: Run) -> np.ndarray:
     return np.full(len(run.time), WALK) if speed is None else np.maximum(speed, STANDS)
 
 
+def smooth(run: Run, channel: str) -> np.ndarray | None:
+    """A channel at all times of a run (n,), as means over SMOOTH; None where it has no two readings."""
+    readings = run.channels.get(channel, np.empty(0))
+    good = np.isfinite(readings)
+    return _means(run.time, run.time[good], readings[good]) if good.sum() > 1 else None
+
+
 def sets_off(campaign: Campaign) -> bool:
     """Does some run have the chair stand, and roll after that?"""
     return any(_sets_off(speed) for speed in map(_speed, campaign.runs) if speed is not None)
@@ -70,11 +77,7 @@ def _way(time: np.ndarray, speed: np.ndarray, until: float) -> float | None:
 
 def _speed(run: Run) -> np.ndarray | None:
     """That of the faster wheel (n,), or of the chair, at all times."""
-    found = []
-    for name in (name for name in SPEEDS if name in run.channels):
-        good = np.isfinite(run.channels[name])
-        if good.sum() > 1:
-            found.append(np.abs(_smooth(run.time, run.time[good], run.channels[name][good])))
+    found = [np.abs(read) for name in SPEEDS if (read := smooth(run, name)) is not None]
     return np.max(found, axis=0) if found else None
 
 
@@ -88,11 +91,11 @@ def _between_places(run: Run) -> np.ndarray | None:
         return None
     time = run.time[good]
     ends = [np.clip(run.time + side * APART / 2, time[0], time[-1]) for side in (-1, 1)]
-    took, *way = (np.subtract(*(_smooth(end, time, c) for end in reversed(ends))) for c in (time, x[good], y[good]))
+    took, *way = (np.subtract(*(_means(end, time, c) for end in reversed(ends))) for c in (time, x[good], y[good]))
     return np.divide(np.hypot(*way), took, out=np.zeros_like(took), where=took > 0)
 
 
-def _smooth(at: np.ndarray, time: np.ndarray, values: np.ndarray) -> np.ndarray:
+def _means(at: np.ndarray, time: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Means (n,) over SMOOTH about each time of a series of its own times."""
     ends = [np.clip(at + side * SMOOTH / 2, time[0], time[-1]) for side in (-1, 1)]
     wide = ends[1] - ends[0]

@@ -300,11 +300,7 @@ class _Place:
 
     def evaluation(self) -> Evaluation:
         """Copies of what is told, and of the filter, each to be forgotten by itself: the rest is needed no more."""
-        n, nz, u = self.n, self.nz, len(self.run.starts) + self.l
-
-        def told(name: str, *shape: int, of: str = "") -> np.ndarray:
-            return self.view(name, shape, of).copy()
-
+        n, nz, u, told = self.n, self.nz, len(self.run.starts) + self.l, self._told
         readings = {name: told(name, n, nz, of="own") for name in ("predicted", "r")}
         return Evaluation(
             start=told("start", u, of="own"),
@@ -320,15 +316,19 @@ class _Place:
             pushed=self.pushed,
         )
 
+    def _told(self, name: str, *shape: int, of: str = "") -> np.ndarray:
+        """A copy of what is told there."""
+        return self.view(name, shape, of).copy()
+
     def _whitener(self) -> Whitener:
         n, nz, nx, nq = self.n, self.nz, self.nx, len(self.run.pushes) + self.nd
         shapes = {"B": (n - 1, nx, nq), "C": (n - 1, nx, nq), "H": (n, nz, nx), "D": (n, nz, nq), "input_sd": (n, nq)}
         shapes |= {"input_phi": (n - 1, nq), "phi": (n - 1, nz), "start_cov": (nx, nx), "common": (nq, nq)}
-        arrays = {name: self.view(name, shape, "f").copy() for name, shape in shapes.items()}
-        arrays["A"] = self.view("transition", (n - 1, nx, nx), "by").copy()
+        arrays = {name: self._told(name, *shape, of="f") for name, shape in shapes.items()}
+        arrays["A"] = self._told("transition", n - 1, nx, nx, of="by")
         arrays["sd"] = self.given["sd"]
         flags = self.view("present", (n * nz // 8 + 1,), "f").view(np.int8)[: n * nz].reshape(n, nz).copy()
-        gain, scale = self.view("gain", (n, nz, nx + nq + nz)).copy(), self.view("scale", (n, nz)).copy()
+        gain, scale = self._told("gain", n, nz, nx + nq + nz), self._told("scale", n, nz)
         logdet = float(self.view("told", (2,))[0])
         present, noise = np.isfinite(self.run.readings), replace(self.run.noise, start=arrays["start_cov"])
         return Whitener.of(

@@ -88,11 +88,9 @@ static inline void find_stays(const filter *f, const acting *a, long i, double *
 }
 
 /* F of the states (nx rows of nx + the inputs that act): what takes them from sample i to i+1, but for fresh noise, of which C
- * (nx rows of these inputs) says what it does. */
-static inline void find_motion(const filter *f, const acting *a, long i, double *F, double *C) {
+ * (nx rows of these inputs) says what it does. phi: the share of each of these inputs that stays. */
+static inline void find_motion(const filter *f, const acting *a, long i, const double *phi, double *F, double *C) {
     int nx = f->nx, nq = a->n;
-    double phi[WC_MOST];
-    take(a, f->input_phi + i * f->nq, phi);
     for (int r = 0; r < nx; r++, F += nx + nq, C += nq) {
         memcpy(F, f->A + (i * nx + r) * nx, sizeof(double) * (size_t)nx);
         take(a, f->B + (i * nx + r) * f->nq, F + nx);
@@ -106,31 +104,30 @@ static inline void find_motion(const filter *f, const acting *a, long i, double 
 /* The covariance of s, in rows of whole lanes. */
 typedef struct {
     acting a;
-    int size, stride;
+    int stride;
     double P[WC_MOST * WC_MOST];
 } covariance;
 
 static void begin(const filter *f, long n, covariance *c) {
     c->a = acting_of(f, n);
-    int nx = f->nx, nq = c->a.n, own = nx + nq;
+    int nx = f->nx, nq = c->a.n, own = nx + nq, size = c->a.size;
     double sd[WC_MOST];
     take(&c->a, f->input_sd, sd);
-    c->size = c->a.size;
-    c->stride = padded(c->size);
-    memset(c->P, 0, sizeof(double) * (size_t)(c->size * c->stride));
+    c->stride = padded(size);
+    memset(c->P, 0, sizeof(double) * (size_t)(size * c->stride));
     for (int r = 0; r < nx; r++) memcpy(c->P + r * c->stride, f->start_cov + r * nx, sizeof(double) * (size_t)nx);
     for (int q = 0; q < nq; q++) {
         double *row = c->P + (nx + q) * c->stride + nx;
         for (int p = 0; p < nq; p++) row[p] = common(f, c->a.which[q], c->a.which[p]) * sd[q] * sd[p];
     }
-    for (int z = 0; z < c->size - own; z++) c->P[(own + z) * (c->stride + 1)] = f->sd[z] * f->sd[z];
+    for (int z = 0; z < size - own; z++) c->P[(own + z) * (c->stride + 1)] = f->sd[z] * f->sd[z];
 }
 
-/* rows: what fresh noise of each input at i+1 (nq) shares with s there, through the states, by C (nx x nq), and in itself. */
-static void find_fresh(const filter *f, const acting *a, long i, int stride, const double *C, double *rows) {
+/* rows: what fresh noise of each input at i+1 (nq) shares with s there, through the states, by C (nx x nq), and in itself. phi:
+ * the share of each that stays. */
+static void find_fresh(const filter *f, const acting *a, long i, int stride, const double *phi, const double *C, double *rows) {
     int nx = f->nx, nq = a->n;
-    double phi[WC_MOST], sd[WC_MOST];
-    take(a, f->input_phi + i * f->nq, phi);
+    double sd[WC_MOST];
     take(a, f->input_sd + (i + 1) * f->nq, sd);
     memset(rows, 0, sizeof(double) * (size_t)(nq * stride));
     for (int q = 0; q < nq; q++) {
@@ -146,18 +143,18 @@ static void find_fresh(const filter *f, const acting *a, long i, int stride, con
 
 /* P at sample i+1 from P at i: F P Fᵀ, of which the states' own part is all that takes a second product, and fresh noise. */
 static void predict(const filter *f, long i, covariance *c) {
-    int stride = c->stride, nx = f->nx, nq = c->a.n, both = nx + nq, size = c->size, short_stride = padded(nx);
+    int stride = c->stride, nx = f->nx, nq = c->a.n, both = nx + nq, size = c->a.size, short_stride = padded(nx);
     double F[WC_MOST * WC_MOST], T[WC_MOST * WC_MOST], U[WC_MOST * WC_MOST], fresh[WC_MOST * WC_MOST], C[WC_MOST * WC_MOST];
     double stays[WC_MOST], *P = c->P;
-    find_motion(f, &c->a, i, F, C);
     find_stays(f, &c->a, i, stays);
+    find_motion(f, &c->a, i, stays, F, C);
     memset(T, 0, sizeof(double) * (size_t)(nx * stride));
     for (int r = 0; r < nx; r++) add_rows(stride, 1, &(weighed_rows){both, P, stride, F + r * both, 1}, T + r * stride);
     memset(U, 0, sizeof(double) * (size_t)(both * short_stride));
     for (int k = 0; k < both; k++) {
         for (int r = 0; r < nx; r++) U[k * short_stride + r] = T[r * stride + k];
     }
-    find_fresh(f, &c->a, i, stride, C, fresh);
+    find_fresh(f, &c->a, i, stride, stays, C, fresh);
     for (int k = nx; k < size; k++) {
         double stay = stays[k - nx];
         for (int j = nx; j < size; j++) P[k * stride + j] *= stay * stays[j - nx];
@@ -193,7 +190,7 @@ static double expect(const filter *f, long i, int z, const covariance *c, double
 /* The same, and P once the reading is known. */
 static double hear(const filter *f, long i, int z, covariance *c, double *Ph) {
     double variance = expect(f, i, z, c, Ph);
-    for (int r = 0; r < c->size; r++) add_row_of(c->stride, -(Ph[r] / variance), Ph, c->P + r * c->stride);
+    for (int r = 0; r < c->a.size; r++) add_row_of(c->stride, -(Ph[r] / variance), Ph, c->P + r * c->stride);
     return variance;
 }
 
@@ -213,7 +210,7 @@ double wc_design(const filter *f, long n, double *gain, double *scale) {
             double variance = hear(f, i, z, &c, Ph);
             scale[i * f->nz + z] = 1 / sqrt(variance);
             total += log(variance);
-            for (int r = 0; r < c.size; r++) K[place(f, &c.a, r)] = Ph[r] / variance;
+            for (int r = 0; r < c.a.size; r++) K[place(f, &c.a, r)] = Ph[r] / variance;
             if (!c.a.lasting) K[both + z] = f->sd[z] * f->sd[z] / variance;
         }
     }
@@ -226,8 +223,8 @@ double wc_design(const filter *f, long n, double *gain, double *scale) {
 static void carry(const filter *f, const acting *a, long i, const double *S, double *next, int stride) {
     int nx = f->nx, both = nx + a->n;
     double F[WC_MOST * WC_MOST], C[WC_MOST * WC_MOST], stays[WC_MOST];
-    find_motion(f, a, i, F, C);
     find_stays(f, a, i, stays);
+    find_motion(f, a, i, stays, F, C);
     memset(next, 0, sizeof(double) * (size_t)(a->size * stride));
     for (int r = 0; r < nx; r++) add_rows(stride, 1, &(weighed_rows){both, S, stride, F + r * both, 1}, next + r * stride);
     for (int k = nx; k < a->size; k++) add_row_of(stride, stays[k - nx], S + k * stride, next + k * stride);
@@ -351,7 +348,7 @@ double wc_deviance(const filter *f, long n, const double *start_mean, const doub
             if (!f->present[at]) continue;
             double variance = hear(f, i, z, &c, Ph), told = residual[at] - expected(f, &c.a, at, s);
             total += told * told / variance + log(variance);
-            add_row(c.size, told / variance, Ph, s);
+            add_row(c.a.size, told / variance, Ph, s);
         }
     }
     return total;

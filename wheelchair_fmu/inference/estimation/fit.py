@@ -73,7 +73,7 @@ def prior_of(likelihood: Likelihood, names: Sequence[str]) -> Prior:
     """Calibrated values have the campaign's word, or as much as chairs differ by where nobody gave one's; constants of effects
     have their records'. Sizes of effects have none, but that of several parameters which the data cannot tell apart each is
     taken to be no larger than it must be."""
-    mean = np.array([start_value(likelihood, likelihood.records[n]) for n in names])
+    mean = np.array([*start_values(likelihood, names).values()])
     groups = Counter(n.rpartition(".")[0] for n in names if likelihood.records[n].estimated)
 
     def sd(name: str, mean: float) -> float:
@@ -95,8 +95,10 @@ def sizes_an_effect(record: Parameter) -> bool:
     return record.estimated and record.name.startswith("effect.")
 
 
-def start_value(likelihood: Likelihood, record: Parameter) -> float:
-    return likelihood.campaign.known.get(record.name, likelihood.variant.values.get(record.name, record.default))
+def start_values(likelihood: Likelihood, names: Sequence[str]) -> dict[str, float]:
+    """Values as the campaign gives them, or else the chair, or as they are usual."""
+    given = {**likelihood.variant.values, **likelihood.campaign.known}
+    return {n: given.get(n, likelihood.records[n].default) for n in names}
 
 
 class Problem:

@@ -11,14 +11,13 @@ from collections.abc import Mapping
 from math import atan, exp, pi, remainder, tan, tau
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
 
 from ...campaign import Run
 from ...campaign.channels import SIDES
+from ...campaign.moving import smooth
 from ...model.chassis import DEFAULTS
 from .initial_state import CASTERS, TRAIL
 
-SMOOTH = 0.1  # s over which speeds are taken
 ROLLS = 0.05  # m/s: a pivot that is slower goes no way that sensors tell
 LEADS = pi / 2  # rad by which a pivot's way is off the way that its wheel points, from which on the caster leads
 
@@ -38,12 +37,10 @@ def may_swing_round(run: Run, known: Mapping[str, float]) -> bool:
 
 def _rolls_and_turns(run: Run, t_r: float) -> tuple[np.ndarray, np.ndarray] | None:
     """Speed (n,) in m/s and yaw rate (n,) in rad/s, by both wheels, or else as they were measured."""
-    if set(SIDES) <= set(run.channels):
-        left, right = (_smooth(run, side) for side in SIDES)
+    left, right, u, r = (smooth(run, name) for name in (*SIDES, "u", "yaw_rate"))
+    if left is not None and right is not None:
         return (left + right) / 2, (left - right) / t_r
-    if {"u", "yaw_rate"} <= set(run.channels):
-        return _smooth(run, "u"), _smooth(run, "yaw_rate")
-    return None
+    return None if u is None or r is None else (u, r)
 
 
 def _most_off(ahead: np.ndarray, aside: np.ndarray, r: np.ndarray, dt: np.ndarray, start: float) -> float:
@@ -61,10 +58,3 @@ def _most_off(ahead: np.ndarray, aside: np.ndarray, r: np.ndarray, dt: np.ndarra
             most = max(most, abs(off))
         points = towards - 2 * atan(tan(off / 2) * exp(-way)) - turn
     return most
-
-
-def _smooth(run: Run, channel: str) -> np.ndarray:
-    """A channel (n,) at all times of a run, over SMOOTH."""
-    read = np.isfinite(run.channels[channel])
-    whole = np.interp(run.time, run.time[read], run.channels[channel][read]) if read.any() else np.zeros(len(run.time))
-    return uniform_filter1d(whole, max(1, round(SMOOTH / float(np.median(np.diff(run.time))))))

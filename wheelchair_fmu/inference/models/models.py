@@ -12,7 +12,7 @@ import numpy as np
 from ...campaign import Campaign
 from ...errors import SimulationError
 from ...model.stage import Effect
-from ..estimation.fit import Fit, Problem, fit, sizes_an_effect, start_value
+from ..estimation.fit import Fit, Problem, fit, sizes_an_effect, start_values
 from ..estimation.foretelling import foretold_by
 from ..estimation.inverse import inverse
 from ..estimation.statistics import estimates
@@ -193,8 +193,8 @@ class Models:
         # Whoever compares this chair knows of no start but the campaign's, and it is one chair with one error.
         likelihood = (self if self.factory.leads else self.afresh()).likelihood()
         names = self.names(())
-        given = {n: start_value(likelihood, likelihood.records[n]) for n in names}
-        start = {n: self.setting.values.get(n, v) for n, v in {**given, **self._fitted_offsets(likelihood)}.items()}
+        given = {**start_values(likelihood, names), **self._fitted_offsets(likelihood)}
+        start = {n: self.setting.values.get(n, v) for n, v in given.items()}
         nominal = likelihood.evidence(self.campaign.fit, start, names, tune_start=TUNING)
         nominal_held = likelihood.evidence(self.campaign.holdout, start, (), tune_start=TUNING)
         if BEARING in names and not self.factory.leads:
@@ -213,8 +213,7 @@ class Models:
         the runs, they are found with everything else."""
         if self.factory.leads or not self.offsets:
             return {}
-        given = {n: start_value(likelihood, likelihood.records[n]) for n in self.offsets}
-        return dict(fit(likelihood, self.offsets, given).values)
+        return dict(fit(likelihood, self.offsets, start_values(likelihood, self.offsets)).values)
 
     def _loosely(self, names: Sequence[str]) -> Fit:
         """The likeliest fit from where nothing is held."""
