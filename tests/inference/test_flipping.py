@@ -9,7 +9,9 @@ import pytest
 
 from wheelchair_fmu.engine.simulate import Simulator
 from wheelchair_fmu.inference.evidence.flipping import may_swing_round
+from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.model.variant import Variant
+from wheelchair_fmu.model.wheelchair import Choice
 
 T_R = 0.55
 FORWARD, BACK, RIGHT, LEFT = (0.6, 0.6), (-0.3, -0.3), (0.3, -0.3), (-0.3, 0.3)  # m/s of the left and the right wheel
@@ -47,6 +49,12 @@ def test_casters_that_start_turned_round_swing_as_soon_as_the_chair_rolls(sample
     run = rolling(sample, FORWARD)
     assert not may_swing_round(run, {"chair.t_r": T_R})
     assert may_swing_round(run, {"chair.t_r": T_R, "start.caster_l": 3.0})
+
+
+def test_what_a_variant_says_of_the_start_counts_as_well(sample):
+    chair = Variant(Choice(caster="slipping"))
+    assert not Likelihood(sample, chair, columns=()).may_flip
+    assert Likelihood(sample, chair.with_values({"start.caster_l": 3.0}), columns=()).may_flip
 
 
 @pytest.mark.parametrize(("parts", "swings"), [((FORWARD, CURVE), False), ((FORWARD, BACK), True), ((RIGHT, LEFT), True)])

@@ -234,7 +234,7 @@ class Likelihood:
             return False
         known = self._swinging.get(run.name)
         if known is None or known[0] is not run:
-            known = self._swinging[run.name] = run, may_swing_round(run, self.known(run))
+            known = self._swinging[run.name] = run, may_swing_round(run, self._set(run, {}))
         return known[1]
 
     def _errors_of_pushes(self, run: Run) -> np.ndarray | None:
