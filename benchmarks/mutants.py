@@ -200,6 +200,11 @@ class Scratch:
         return "too slow" if code is None else "survived" if code == 0 else "killed"
 
 
+def enough(noticed: int, drawn: int) -> bool:
+    """Are as many noticed of those that are drawn as have to be?"""
+    return noticed >= LEAST * drawn
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sample", type=int, default=0, help="so many mutants drawn at random, besides those that are named")
@@ -225,7 +230,7 @@ def main() -> None:
     print(f"\n{len(mutants) - len(survivors)} of {len(mutants)} noticed, {fates.count('too slow')} of these by their time")
     if survivors:
         print("not noticed:", *survivors, sep="\n")
-    sys.exit(len(survivors) > (1 - LEAST) * len(mutants) if given.drawn else bool(survivors))
+    sys.exit(not enough(len(mutants) - len(survivors), len(mutants)) if given.drawn else bool(survivors))
 
 
 if __name__ == "__main__":

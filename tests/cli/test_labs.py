@@ -13,12 +13,14 @@ from tests.campaign.test_measurements import MEASUREMENTS
 from tests.campaign.test_measurements import folder as measured
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.inference.decision.final import final
+from wheelchair_fmu.inference.decision.improve import add
 from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.explain.story import story
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library
+from wheelchair_fmu.model.variant import Variant
 
-DRAWN, HIDES = 2, 23  # seeds
+DRAWN, HIDES, ASIDE = 2, 23, 243  # seeds
 WITHIN = 1.25  # times the best that a simulation reaches which knows what was hidden
 
 
@@ -30,6 +32,15 @@ def found(request, tmp_path_factory):
     measured(request.param)
     out = imported(recorded(MEASUREMENTS, request.param), tmp_path_factory.mktemp("lab") / request.param)
     return request.param, diagnose(read(out)), out
+
+
+@pytest.mark.nightly
+def test_what_bends_a_chair_far_from_what_is_usual_can_be_added(tmp_path):
+    """A centre of mass 15 mm aside, that bends C_λ to twice its size: a fit that begins where values are usual goes astray."""
+    folder = imported(drawn(tmp_path / "raw", ASIDE), tmp_path / "lab")
+    better = add(read(folder), Variant(), ["cm_lateral_offset"])
+    assert better.fit.values["effect.cm_lateral_offset.y"] == pytest.approx(0.015, abs=0.002)
+    assert better.ladder[-1].heldout < 0.5 * better.ladder[-2].heldout
 
 
 @pytest.mark.nightly

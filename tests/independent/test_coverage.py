@@ -36,6 +36,16 @@ def test_intervals_hold_what_was_hidden(effect):
 
 
 @pytest.mark.nightly
+@pytest.mark.parametrize(
+    ("effect", "only"), [("turn_slip", ""), ("stroke_motion", ""), ("trunk_motion", "swing"), ("marker_offset", "")]
+)
+def test_what_real_chairs_do_is_named_at_three_times_what_is_of_interest(effect, only):
+    found = trial(Case("effect", (effect,), 3.0, manoeuvres=EFFECTS[effect].sees, seed=21, only=only), with_baselines=False)
+    assert effect in named(found) and found["verdict"] in ("missing", "tie")
+    assert not false_alarm(found)
+
+
+@pytest.mark.nightly
 def test_what_bends_a_given_value_is_looked_for_though_the_error_is_noise():
     case = Case("effect", ("inflation_pressure",), 3.0, manoeuvres="pressure", seed=733)
     found = trial(case, with_baselines=False)

@@ -213,6 +213,16 @@ def test_what_is_as_little_as_a_laws_error_is_nobodys_effect():
     assert replace(r, explained=1.5e5).winner is None and not replace(r, explained=1.5e5).slight
 
 
+def test_what_readings_cannot_see_is_as_probable_as_it_was_beforehand():
+    """Beside a large effect that was found, too: laws that are not exact can only take from what is gained."""
+    blind = candidate("a", 0.0, np.array([0.0]), np.array([[1e6]]))
+    hardly = candidate("a", 5.4, np.array([1.3]), np.array([[1.7**2]]))  # likelier slight than large, by a little
+    for c, expected in ((blind, 1 / 33), (hardly, 0.0155)):
+        for explained in (0.0, 3.5e4):
+            r = Round((), NONE, Evidence((), ()), (None,) * 33, (c,), explained=explained)
+            assert r.beliefs["a"].there == pytest.approx(expected, rel=0.01) and r.winner is None
+
+
 def test_what_is_perhaps_nothing_is_not_found():
     """Six deltas, at two and a half standard errors, of one of thirty."""
     known = candidate("a", 6.25, np.array([6.0]), np.array([[2.4**2]]))

@@ -17,6 +17,7 @@ from tests.inference.linear import STEP, evidence, least_squares, noise, signals
 from wheelchair_fmu.inference.chance import student
 from wheelchair_fmu.inference.decision.bootstrap import _estimates
 from wheelchair_fmu.inference.estimation.interval import NORMAL, half_width
+from wheelchair_fmu.inference.estimation.own_constant import own_constant
 from wheelchair_fmu.inference.estimation.score import Projector, robust_variance, score
 from wheelchair_fmu.inference.estimation.statistics import (
     between_runs,
@@ -396,19 +397,38 @@ def test_a_start_goes_where_readings_want_it_but_no_further_than_three_standard_
             assert (e.start["start.u"] - true.start["start.u"]) / sd == pytest.approx(expected, abs=0.2)
 
 
-def test_what_readings_leave_uncertain_of_a_start():
-    """n readings of the start's speed with noise σ, and a prior p, leave 1/√(1/p² + n/σ²)."""
-    n, sigma, p = 50, 0.3, START_SD["start.u"]
-    covariance = sigma**2 * np.eye(n) + p**2 * np.ones((n, n))
-    size, axes = np.linalg.eigh(covariance)
-    whitened = axes @ ((axes.T @ np.ones(n)) / np.sqrt(size))
-    (e,) = evidence([np.zeros((n, 1))], [np.zeros((n, 1, 0))], ()).runs
+def told_of_a_start(noise_of_it: np.ndarray, known: float, true: float) -> tuple[float, float]:
+    """What is told of a run's first speed, to be read in waves beside this noise (n,), which a model takes for white."""
+    n = len(noise_of_it)
+    waves = signals(np.random.default_rng(5), 1, n, 1)[0][:, 0, 0]
+    size, axes = np.linalg.eigh(np.eye(n) + known**2 * np.outer(waves, waves))
+    r, s = ((axes / np.sqrt(size)) @ (axes.T @ what) for what in (true * waves + noise_of_it, waves))
+    (e,) = evidence([r[:, None]], [np.zeros((n, 1, 0))], ()).runs
     e = replace(e, start=dict.fromkeys(START, 0.0))
     names = list(e.uncertain)
     slopes = np.zeros((n, 1, len(names)))
-    slopes[:, 0, names.index("start.u")] = whitened
-    left = replace(e, start_S=slopes).posterior_sd("start.u", p)
-    assert left == pytest.approx((1 / p**2 + n / sigma**2) ** -0.5, rel=1e-9)
+    slopes[:, 0, names.index("start.u")] = s
+    return own_constant(replace(e, start_S=slopes), "start.u", known)
+
+
+@pytest.mark.parametrize(("rho", "times", "level"), [(0.0, 1.0, 0.955), (0.9, 1.0, 0.95), (0.6, 4.0, 0.95)])
+def test_what_readings_tell_of_a_constant_of_one_run_is_as_sure_as_it_says(rho, times, level):
+    """Beside noise that is white, that lasts, and that lasts and is four times as large as the model has it."""
+    rng, known, inside, n = np.random.default_rng(11), 0.5, [], 400
+    for _ in range(400):
+        true = known * rng.normal()
+        told, se = told_of_a_start(times * noise(rng, (n,), rho), known, true)
+        assert se < known
+        inside.append(abs(told - true) < 2 * se)
+    assert np.mean(inside) == pytest.approx(level, abs=0.025)
+
+
+def test_what_white_readings_leave_uncertain_of_a_constant():
+    """n readings with noise σ = 1 and slopes s, and a prior p, leave 1/√(1/p² + s·s), but for the chance of the scatter."""
+    waves = signals(np.random.default_rng(5), 1, LONG, 1)[0][:, 0, 0]
+    known = 0.5
+    drawn = [told_of_a_start(white((LONG,), seed), known, 0.0)[1] for seed in range(40)]
+    assert np.mean(drawn) == pytest.approx((1 / known**2 + float(waves @ waves)) ** -0.5, rel=0.06)
 
 
 def test_no_runs_are_no_evidence():

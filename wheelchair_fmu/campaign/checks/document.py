@@ -27,6 +27,7 @@ from ..schema import CAMPAIGN, COLUMN, OTHER_TABLES, PARAMETER_TABLES, RECORDING
 CASTERS = ("start.caster_l", "start.caster_r")
 THIRDS, EIGHTHS = (1 / 3, 2 / 3), tuple(n / 8 for n in range(1, 9))  # as shares of a turn would be written
 TYRE_LAW = "tyre.law"  # which a whole number stands for
+OF_A_VARIANT = 'choose the law in a variant (tyre = "dugoff" under [laws]) and give that with --variant'
 ROUNDED = 0.005  # by which a third may be
 PLACED = frozenset(name for names in MOUNTED.values() for name in names)  # channels for which it matters where they are read
 Known = Mapping[str, tuple[float, float]]
@@ -391,7 +392,9 @@ def _parameter(
             cure = f"give a whole number from {lower:g} to {upper:g}"
             yield doc.fault(path, f"{title}{name} = {plain:g} is no law", cure, place)
         elif name == TYRE_LAW and entry:
-            yield doc.fault(path, f"{title}{name} is one for all runs", f"write law = {plain:g} under [tyre]", place)
+            yield doc.fault(path, f"{title}{name} is one for all runs", OF_A_VARIANT, place)
+        elif name == TYRE_LAW:
+            yield doc.fault(path, f"{name} = {plain:g} of a campaign chooses no law", OF_A_VARIANT, place, WARNING)
         elif name in CASTERS and (turns := _share_of_a_turn(plain)):
             fact = f"{title}{name} = {plain:g} is {degrees(plain):.0f}°, as it is in rad"
             angle = remainder(2 * pi * turns, 2 * pi) or 0.0  # and not -0.0

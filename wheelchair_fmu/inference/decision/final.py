@@ -12,8 +12,10 @@ from ...quantities import Parameter
 from ..estimation.calibration import at_bound
 from ..estimation.fit import Fit
 from ..estimation.interval import interval_by_errors
+from ..estimation.own_constant import own_constant
 from ..estimation.statistics import finite, sandwich
-from ..evidence.evidence import Evidence
+from ..evidence.evidence import Evidence, RunEvidence
+from ..evidence.likelihood import Likelihood
 from .verdict import Diagnosis
 
 BY_PROFILE, BY_ERRORS = "profile", "errors"  # how an interval was found
@@ -43,7 +45,7 @@ def final(d: Diagnosis, more: Mapping[str, Parameter]) -> dict[str, Any]:
         ],
         "covariance": ((covariance + covariance.T) / 2).tolist(),  # symmetric to the last digit
         "fixed": {n: d.models.factory.variant.values.get(n) for n in sorted(d.models.factory.fixed)},
-        "runs": {r.name: _run(r, found.evidence) for r in d.models.factory.campaign.runs},
+        "runs": {r.name: _run(r, found.evidence, likelihood) for r in d.models.factory.campaign.runs},
     }
 
 
@@ -95,9 +97,18 @@ def _parameter(
     }
 
 
-def _run(run: Run, evidence: Evidence) -> dict[str, Any]:
-    """`role`, the times `from` and `to` (s), and by channel how many `readings` there were and, of a fitted run, how many of
-    them the fit `used`: none tells anything of a chair about the moment it comes to rest."""
+def _start(e: RunEvidence, likelihood: Likelihood) -> dict[str, dict[str, Any]]:
+    """By parameter, where a run began: its `value` given all readings, its `se` and its `unit`."""
+    expected, began = likelihood.expected_start(e.run), {}
+    for name in e.started:
+        off, se = own_constant(e, name, e.uncertain[name])
+        began[name] = {"value": expected[name] + off, "se": se, "unit": likelihood.records[name].unit.name}
+    return began
+
+
+def _run(run: Run, evidence: Evidence, likelihood: Likelihood) -> dict[str, Any]:
+    """`role`, the times `from` and `to` (s), by channel how many `readings` there were and, of a fitted run, how many of them
+    the fit `used`: none tells anything of a chair about the moment it comes to rest; and where a fitted run began (`start`)."""
     fitted = next((e for e in evidence.runs if e.run.name == run.name), None)
     counts = {c: int(np.isfinite(series).sum()) for c, series in run.channels.items()}
     used = {} if fitted is None else {c: int(np.isfinite(fitted.r[:, i]).sum()) for i, c in enumerate(fitted.channels)}
@@ -105,5 +116,6 @@ def _run(run: Run, evidence: Evidence) -> dict[str, Any]:
         "role": run.role,
         "from": float(run.time[0]),
         "to": float(run.time[-1]),
+        "start": _start(fitted, likelihood) if fitted else None,
         "channels": {c: {"readings": n, "used": used.get(c)} for c, n in counts.items()},
     }

@@ -60,7 +60,10 @@ def _with(models: Models, base: Model, effect: str) -> tuple[Models, Model]:
     screened = screen(models, base, [effect])
     found = candidate(models, base, screened[0], 1) if screened else None
     if found is None:
-        raise Failure(f"the chair with {effect} cannot be simulated on these runs; check its bounds and its law")
+        raise Failure(
+            f"no fit of the chair with {effect} was found that leaves less than the chair without it, or it cannot be "
+            "simulated on these runs; check its bounds and its law"
+        )
     return models.settled((*base.effects, effect), found.fit)
 
 

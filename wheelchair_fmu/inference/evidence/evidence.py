@@ -62,12 +62,6 @@ class RunEvidence:
         """Which innovations (n, nz) there are."""
         return np.isfinite(self.r)
 
-    def posterior_sd(self, name: str, prior_sd: float) -> float:
-        """Standard deviation, given the readings, of what is uncertain of this run under this name."""
-        good = np.isfinite(self.r)
-        told = self.start_S[good][:, list(self.uncertain).index(name)]
-        return prior_sd * float(np.sqrt(max(0.0, 1 - prior_sd**2 * float(told @ told))))
-
     @property
     def uncertain(self) -> dict[str, float]:
         """Standard deviations of what is estimated of the run for itself."""

@@ -18,6 +18,7 @@ from ...campaign.clocks import Signal, odd_ones_out
 from ...campaign.clocks.pushes import ENOUGH, LEAST, ODD, weighted_median
 from ...campaign.recorded import PUSHES_CLOCK
 from ...errors import SimulationError
+from ..estimation.own_constant import own_constant
 from ..estimation.score import Projector
 from ..estimation.statistics import correlation_time
 from ..evidence.evidence import Evidence, RunEvidence
@@ -172,8 +173,8 @@ def clocks(*evidence: Evidence) -> dict[str, dict[str, Late]]:
 
 
 def _estimated(e: RunEvidence, clock: Clock) -> Late:
-    name = f"clock.{clock.device}"
-    return Late(clock.offset + e.start.get(name, 0.0), e.posterior_sd(name, clock.sd))
+    late, se = own_constant(e, f"clock.{clock.device}", clock.sd)
+    return Late(clock.offset + late, se)
 
 
 def _pushes(run: Run) -> dict[str, np.ndarray]:

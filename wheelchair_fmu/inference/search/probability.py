@@ -54,7 +54,7 @@ def beside(r: Round, one_sided: Mapping[str, np.ndarray]) -> dict[str, Belief]:
     same share what they have."""
     refitted = {c.effect: c.support for c in r.candidates}
     supports = [refitted.get(s.effect) or of_score(s, one_sided[s.effect], r.policy) for s in r.scores]
-    odds = [exp(min(r.log_prior + s.large - max(0.0, s.slight), MOST)) for s in supports]
+    odds = [exp(min(r.log_prior + s.large - r.nothing([s]), MOST)) for s in supports]
     alike = cosines(r.scores, r.scores) ** 2
     np.fill_diagonal(alike, 1.0)
     there = odds / (1 + alike @ np.array(odds))

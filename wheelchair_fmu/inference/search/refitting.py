@@ -41,6 +41,8 @@ def candidate(
         models.say(f"refitting {effect}")
     rival = min(rival, base.fit.deviance)  # which it has as a special case
     found, anew = _best_of(models, effects, starts, rival), _afresh(models, base, s, least, rival)
+    if found is not None and found.deviance > base.fit.deviance and not models.factory.leads:
+        found = _from_base(models, base, s, found)
     afresh = anew is not None and (found is None or anew.deviance < found.deviance)
     if afresh:
         found, models = anew, models.afresh()
@@ -93,6 +95,16 @@ def _best_of(models: Models, effects: Sequence[str], starts: Sequence[Start], ri
         return models.refit(effects, best.values) if best and constants else best
     except SimulationError:
         return best  # by the law as its record has it
+
+
+def _from_base(models: Models, base: Model, s: Screened, found: Fit) -> Fit:
+    """The likelier of a fit and of one from what was fitted without the effect. That model is a special case of the one with
+    it, so that a fit which ends less likely went astray: slopes of one calibration promised too much of another one."""
+    effects = (*base.effects, s.score.effect)
+    try:
+        return min(found, models.refit(effects, {**base.fit.values, **_expected(models, s)}), key=lambda f: f.deviance)
+    except SimulationError:
+        return found
 
 
 def _afresh(models: Models, base: Model, s: Screened, least: float, rival: float) -> Fit | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -94,17 +94,25 @@ class Round:
 
     def likelier_slight(self, c: Candidate) -> bool:
         """Is a candidate that is there likelier slight than large, by what is expected beforehand and by what was measured?"""
-        return c.support.slight > self.log_prior + c.support.large
+        return self.nothing([c.support]) > self.log_prior + c.support.large
 
     @property
     def log_prior(self) -> float:
-        return self.policy.log_prior(len(self.scores)) + float(np.log(self.odds)) - self._of_laws
+        return self.policy.log_prior(len(self.scores)) + float(np.log(self.odds))
 
     @property
-    def _of_laws(self) -> float:
+    def of_laws(self) -> float:
         """Log likelihood that may be gained for no other reason than that the laws of what was found before are not exact."""
         unit = self.every[0].unit if self.every else 1.0
         return 0.5 * self.policy.inexact**2 * max(self.explained, 0.0) / unit
+
+    def nothing(self, supports: Iterable[Support]) -> float:
+        """The log likelihood of there being none of several effects: a slight one may be there, and laws that are not exact may
+        gain as much as one that is large gains beyond it. What readings cannot see is as probable as it was beforehand."""
+        every = list(supports)
+        slight = max(0.0, *(s.slight for s in every))
+        beyond = max(s.large for s in every) - slight
+        return slight + min(max(beyond, 0.0), self.of_laws)
 
 
 def instead(r: Round, candidates: Sequence[Candidate]) -> dict[str, Belief]:
@@ -114,7 +122,7 @@ def instead(r: Round, candidates: Sequence[Candidate]) -> dict[str, Belief]:
     if not candidates:
         return {}
     supports = [c.support for c in candidates]
-    logs = np.array([max(0.0, *(s.slight for s in supports)), *(r.log_prior + s.large for s in supports)])
+    logs = np.array([r.nothing(supports), *(r.log_prior + s.large for s in supports)])
     without, *others = _resampled(r, candidates)
     best = max(supports, key=lambda s: s.slight)
     logs = logs[:, None] + np.array([without * (best.left if best.slight > 0 else 1.0), *others])
@@ -127,7 +135,8 @@ def _present(r: Round, c: Candidate, resampled: np.ndarray | float = 0.0) -> flo
     """The probability that a candidate is there at any size, beside nothing; by its standard errors where these say less than
     the fall of −2 log likelihood does. `resampled` is by how much the log likelihood of the model without it moves."""
     large, slight = c.support.large - c.excess, c.support.slight - (1 - c.support.left) * c.excess
-    return float(np.mean(special.expit(np.logaddexp(large, slight) + r.log_prior - resampled)))
+    gained = np.logaddexp(large, slight) - resampled
+    return float(np.mean(special.expit(r.log_prior + gained - np.clip(gained, 0.0, r.of_laws))))
 
 
 def _present_in_blocks(r: Round, c: Candidate) -> float:
