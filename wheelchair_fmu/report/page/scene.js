@@ -19,7 +19,7 @@ export class Scene {
     this.paths = h("canvas", { "aria-hidden": "true" }); // the overview, which only changes with the run and the model
     this.dots = ["measured", "model"].map((name) => h("i", { class: "dot", style: `background:var(--${name})` }));
     this.key = h("ul", { class: "legend" });
-    this.amounts = Object.fromEntries(["missing", "body"].map((of) => [of, h("b")])); // in the legend
+    this.amounts = Object.fromEntries(["missing", "body", "strokes"].map((of) => [of, h("b", { class: of })])); // in the legend
     this.limits = h("p", { class: "limits", hidden: true });
     place.append(h("div", { class: "scenery" }, this.paths, this.canvas, this.dots), this.limits, this.key);
     this.room = sized(place);
@@ -268,18 +268,24 @@ export class Scene {
 
   /** What is what: [words, colour, which amount stands behind it]. */
   colours() {
-    const { lacking, measured } = this.motion;
-    return [["model", "model"], measured && [measured.tracked ? "measured: tracked" : "measured: from wheel speeds and yaw rate", "measured"], ["push", "good"], ["side force of a tyre", "ink"], ["number at a wheel: the load on it", "faint"],
-      this.moves().length && [`the rider’s body${"rider.momentum" in this.motion.inputs ? " (arrow at the head: its momentum)" : ""}: `, "good", "body"],
+    const { inputs, lacking, measured } = this.motion;
+    return [["model", "model"], measured && [measured.tracked ? "measured: tracked" : "measured: from wheel speeds and yaw rate", "measured"], ["push", "good", "stroke.phase" in inputs && "strokes"], ["side force of a tyre", "ink"], ["load on each wheel", "faint"],
+      this.moves().length && [`the rider’s body${"rider.momentum" in inputs ? " (arrow at the head: its momentum)" : ""}: `, "good", "body"],
       (lacking.force || lacking.moment) && ["force that is missing to move as was measured (arrow × 10): ", "error", "missing"]].filter(Boolean);
   }
 
   says(i) { for (const [of, place] of Object.entries(this.amounts)) write(place, this.amountOf(of, i)); }
 
-  amountOf(of, i) { return of ? { missing: () => this.missed(i), body: () => this.swung(i) }[of]() : ""; }
+  amountOf(of, i) { return of ? { missing: () => this.missed(i), body: () => this.swung(i), strokes: () => this.stroked(i) }[of]() : ""; }
 
   /** What of the body's motion was recorded. */
   moves() { return Object.keys(BODY).filter((name) => name in this.motion.inputs); }
+
+  /** How many strokes the hands have done by sample `i`. */
+  stroked(i) {
+    const phase = this.input("stroke.phase", i);
+    return Number.isFinite(phase) ? `, ${tick(Number(phase.toFixed(1)))} strokes since the first` : "";
+  }
 
   /** How the body moves at sample `i`. */
   swung(i) { return this.moves().map((name) => BODY[name](this.input(name, i))).join(", "); }
@@ -297,7 +303,6 @@ export class Scene {
 const BODY = {
   "rider.s": (v) => (Number.isFinite(v) ? `${tick(Number(v.toFixed(3)))} m forward` : "place not known here"),
   "rider.momentum": (v) => (Number.isFinite(v) ? `${tick(Number(v.toFixed(1)))} N s` : "momentum not known here"),
-  "stroke.phase": (v) => (Number.isFinite(v) ? `${tick(Number(v.toFixed(2)))} strokes since the first` : "stroke not known here"),
 };
 
 const LIMITS = [["load.lifted", "A wheel has left the ground", "the model then no longer holds"], ["push.beyond_friction", "A rear wheel is pushed beyond friction", "it would spin, and in this model it rolls on"]];
