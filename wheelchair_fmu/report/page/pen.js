@@ -35,7 +35,7 @@ export class Pen {
 
   fill() { this.put({ fill: this.fillStyle, "fill-opacity": this.globalAlpha }); }
   stroke() { this.put({ fill: "none", stroke: this.strokeStyle, "stroke-width": this.lineWidth, "stroke-opacity": this.globalAlpha, "stroke-linecap": this.lineCap, "stroke-dasharray": this.dash.length ? this.dash.join(" ") : null }); }
-  strokeText() {} // paper has room about its words
+  fillRect(x, y, w, h) { this.d = `M${x} ${y}H${x + w}V${y + h}H${x}Z`; this.fill(); }
   fillText(words, x, y) {
     const anchor = { center: "middle", right: "end" }[this.textAlign] ?? "start";
     this.drawn.push(text(x, y, words, this.fillStyle, anchor, { "font-size": parseFloat(this.font.match(/[\d.]+px/)), "font-weight": this.font.startsWith("bold") ? 600 : null }));

@@ -9,6 +9,7 @@ import { Pen } from "page/pen";
 const ARROW = { push: 1.1, tyre: 1.1, missing: 11, body: 2 }; // px per N; what is missing is small; of the body per N s
 const CLOSE = 1.5; // m across the close view
 const LETTERS = 11, LINE = 12; // px of words at a wheel, and from one line of them to the next
+const MOST = 500; // labels that are kept
 const SKETCH = 300; // units of drawing that the close view is high in a file, at most
 const LOW = 184; // px high on a phone, so that the chair, the player and the curves are on one screen
 
@@ -237,7 +238,9 @@ export class Scene {
         const lines = this.said(wheel, i), wide = Math.max(...lines.map(([words, bold]) => long(words, this.look, LETTERS, bold ? 600 : 400))) / 2, high = (LINE * lines.length) / 2;
         const [u, v] = [cos * aside + sin * ahead, sin * aside - cos * ahead], out = reach * size + 4 + Math.abs(u) * wide + Math.abs(v) * high;
         const at = [x + size * (cos * px - sin * py) + out * u, y + size * (sin * px + cos * py) + out * v].map((p, k) => Math.min(Math.max(p, [wide, high][k] + 2), [near.w, near.h][k] - [wide, high][k] - 2));
-        lines.forEach(([words, bold], k) => written(c, words, at[0], at[1] - high + LINE * (k + 0.8), bold ? this.look.warn : this.look.faint, this.look.paper, bold));
+        const [left, top] = [at[0] - wide - 1, at[1] - high], box = [2 * wide + 2, 2 * high];
+        if (c.drawImage) c.drawImage(pictured(lines, box, this.look, this.scale), Math.round(left * this.scale) / this.scale, Math.round(top * this.scale) / this.scale, ...box.map((v) => Math.ceil(v * this.scale) / this.scale));
+        else labelled(c, lines, [left, top], box, this.look);
       }
   }
 
@@ -317,11 +320,32 @@ function outside({ time, results }) {
   }).filter(Boolean).join(" ");
 }
 
-/** Words about a place, with paper about them. */
-function written(c, words, x, y, colour, paper, bold) {
-  Object.assign(c, { font: `${bold ? "bold " : ""}${LETTERS}px system-ui, sans-serif`, textAlign: "center", lineWidth: 3, lineJoin: "round", strokeStyle: paper, fillStyle: colour });
-  c.strokeText(words, x, y);
-  c.fillText(words, x, y);
+const pictures = new Map(); // labels as they are on the canvas, by what they say: to draw letters anew in every frame takes longer
+
+function pictured(lines, size, look, scale) {
+  const key = [look.faint, scale, ...lines].join();
+  if (!pictures.has(key)) {
+    if (pictures.size > MOST) pictures.clear();
+    const made = new OffscreenCanvas(...size.map((v) => Math.ceil(v * scale))), c = made.getContext("2d");
+    c.scale(scale, scale);
+    labelled(c, lines, [0, 0], size, look);
+    pictures.set(key, made.transferToImageBitmap());
+  }
+  return pictures.get(key);
+}
+
+/** Lines of words one below the other, on paper, so that they are read there whatever is drawn below. */
+function labelled(c, lines, [left, top], [wide, high], look) {
+  c.fillStyle = look.paper;
+  c.globalAlpha = 0.75;
+  c.fillRect(left, top, wide, high);
+  c.globalAlpha = 1;
+  c.textAlign = "center";
+  lines.forEach(([words, bold], k) => {
+    c.font = `${bold ? "bold " : ""}${LETTERS}px system-ui, sans-serif`;
+    c.fillStyle = bold ? look.warn : look.faint;
+    c.fillText(words, left + wide / 2, top + LINE * (k + 0.8));
+  });
 }
 
 function arrow(c, x, y, dx, dy, colour, width) {
