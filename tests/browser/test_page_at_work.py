@@ -136,6 +136,71 @@ def test_the_chair_from_above_is_saved_with_the_chair(reader):
     assert drawn[0] > 15 and "side force of a tyre" in drawn[1] and "the chair 3.00 s into the run" in drawn[2]
 
 
+DRAWN = "report.figures.all.path.says.draw(400, {...report.look, ink: '#111111', print: true})"
+WORDS = f"[...{DRAWN}.querySelectorAll('text')].map(t => t.textContent)"
+
+
+def test_each_wheel_says_what_it_carries(reader):
+    """Together they carry the chair; the words are those of the file, too."""
+    reader.page.evaluate("report.timeline.go(3)")
+    words = reader.page.evaluate(WORDS)
+    loads = [float(w.removesuffix(" N")) for w in words if re.fullmatch(r"[\d.]+ N", w)]
+    assert len(loads) == 4 and sum(loads) == pytest.approx(80 * 9.81, abs=2.5)
+    assert "load on each wheel" in reader.page.inner_text("#path .legend")
+    assert not {"lifted", "would spin"} & set(words) and reader.page.locator(".limits").is_hidden()
+
+
+def test_a_wheel_that_is_lifted_or_pushed_beyond_friction_says_so(reader):
+    """At the wheel at the moment shown, and of the whole run in a sentence, as sliders move."""
+    page = reader.page
+    page.evaluate("report.show(report.campaign.runs.findIndex(r => r.name === 'straight-strokes'), 'yaw_rate')")
+    reader.set({"tyre.mu": 0.05, "chair.b": 0.02, "effect.longitudinal_load_transfer.h": 1.0})
+    at = "report.campaign.runs[report.shown.run].time[report.results[report.shown.run].results['{}'].{}]"
+    page.wait_for_selector(".limits:visible")
+    for flag, words in (("load.lifted", "lifted"), ("push.beyond_friction", "would spin")):
+        first = at.format(flag, "indexOf(1)")
+        page.evaluate(f"report.timeline.go({first})")
+        assert words in page.evaluate(WORDS)
+        assert f"first at {page.evaluate(first):.2f} s" in page.inner_text(".limits")
+        page.evaluate(f"report.timeline.go({at.format(flag, 'indexOf(0)')})")
+        assert words not in page.evaluate(WORDS)
+    page.click("#reset")
+    reader.settle()
+    page.wait_for_selector(".limits", state="hidden")
+
+
+def test_the_motion_of_the_body_is_seen_where_it_was_recorded(browser, tmp_path):
+    campaign = tmp_path / "campaign"
+    shutil.copytree(SAMPLE, campaign)
+    file, toml = campaign / "runs" / "straight-strokes.csv", campaign / "campaign.toml"
+    run = pd.read_csv(file)
+    run["rider.s [m]"] = 0.06 * np.sin(2 * np.pi * run["time [s]"])
+    run.to_csv(file, index=False)
+    toml.write_text(toml.read_text().replace("[tyre]", "[rider]\nm = 45.0\n\n[tyre]"))
+    reader = Reader(browser, report_of(campaign, tmp_path / "swinging.html"))
+    page, legend = reader.page, lambda: reader.page.inner_text("#path .legend")
+    page.evaluate("report.show(report.campaign.runs.findIndex(r => r.name === 'coast-down'), 'yaw_rate')")
+    reader.settle()
+    page.wait_for_function("!document.querySelector('#path .legend').innerText.includes('momentum')")
+    page.evaluate("report.show(report.campaign.runs.findIndex(r => r.name === 'straight-strokes'), 'yaw_rate')")
+    reader.settle()
+    page.wait_for_function("document.querySelector('#path .legend').innerText.includes('its momentum')")
+    page.evaluate("report.timeline.go(3.25)")  # when it is furthest forward
+    assert re.search(r"rider’s body .*0\.0[56]\d? m forward, −?\d+(\.\d)? N s", legend())
+    shifted = page.evaluate(f"{DRAWN}.outerHTML")
+    page.evaluate("report.motion.inputs['rider.s'].fill(0)")
+    assert page.evaluate(f"{DRAWN}.outerHTML") != shifted  # shoulders and head go with it
+    assert "0 m forward" in page.evaluate(f"{DRAWN}.textContent")
+    reader.close()
+
+
+def test_the_laws_of_the_model_that_runs_are_told(reader):
+    page = reader.page
+    assert "tyres linear (" in page.inner_text("#laws") and "casters ideal (" in page.inner_text("#laws")
+    reader.set({**TOLD["models"][-1]["values"], "effect.caster_friction.M": 0.3})  # which needs casters that swing
+    assert "casters swivelling (" in page.inner_text("#laws") and "rear wheels rolling (" in page.inner_text("#laws")
+
+
 def test_undo_reset_and_a_link_that_survives_a_reload(reader):
     page = reader.page
     start = page.evaluate("report.values")

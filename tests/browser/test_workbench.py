@@ -464,6 +464,58 @@ def test_where_a_device_sits_is_understood_with_points_and_with_commas(page: Any
     assert found == [*said.values(), *(None for _ in none)]
 
 
+def test_where_each_channel_is_read_is_typed_beside_it(page: Any) -> None:
+    """Of those for which it matters: accelerations, positions and speeds, whichever device has them."""
+    take_in(page, *recordings())
+    page.evaluate("for (const d of document.querySelectorAll('#forms details')) d.open = true")
+    places = page.locator("#forms .columns input[aria-label^='where ']")
+    told = [f"where {name} is read" for name in ("forward acceleration", "sideways acceleration")]
+    assert places.evaluate_all("all => all.map(e => e.getAttribute('aria-label'))") == told
+    places.nth(1).fill("0,11 -0,04")
+    places.nth(1).press("Enter")
+    page.wait_for_function("() => workbench.state.campaign.sensor?.a_y?.at?.join() === '0.11,-0.04'")
+    places.nth(1).fill("left")
+    places.nth(1).press("Enter")
+    said = page.locator("#forms .wrong", has_text="sideways acceleration is read is no point; give two numbers in metres")
+    said.wait_for()
+    places.nth(1).fill("")
+    places.nth(1).press("Enter")
+    page.wait_for_function("() => !workbench.state.campaign.sensor")
+    said.wait_for(state="detached")
+
+
+def test_a_device_of_positions_or_markers_has_a_place_as_well(page: Any) -> None:
+    take_in(page, *recordings())
+    page.evaluate("""() => {
+        const state = structuredClone(workbench.state), [first, second] = Object.keys(state.headers);
+        const laser = {device: "laser", columns: {u: {column: first}}};
+        const gyro = {device: "gyro", columns: {yaw_rate: {column: second}}};
+        state.campaign.recording = [laser, gyro, {device: "cameras", columns: {}, markers: {axle_l: "L", axle_r: "R"}}];
+        const files = (run) => ({laser: run.file, gyro: run.file, cameras: run.file});
+        state.campaign.run = state.campaign.run.map((run) => ({...run, files: files(run)}));
+        workbench.show(state);
+    }""")
+    placed = page.locator("#forms input[aria-label$=' sits']")
+    assert placed.evaluate_all("all => all.map(e => e.getAttribute('aria-label'))") == [
+        "where laser sits",
+        "where cameras sits",
+    ]
+    assert "the middle of the rear axle" in placed.nth(1).locator("xpath=..").text_content()
+    assert "Where laser sits was not given" in page.text_content("#assumed")
+
+
+def test_another_law_makes_another_model(page: Any) -> None:
+    take_in(page, *recordings())
+    page.evaluate("for (const d of document.querySelectorAll('#forms details')) d.open = true")
+    casters = page.locator("select[aria-label='law of the casters']")
+    assert casters.input_value() == "ideal" and "each trails its pivot" in page.inner_text(".laws")
+    casters.select_option("slipping")
+    page.wait_for_function("() => workbench.state.laws.caster === 'slipping'")
+    assert "shimmy" in page.inner_text(".laws") and "Caster law slipping" in page.inner_text("#history")
+    page.click("#undo")
+    page.wait_for_function("() => document.querySelector(\"select[aria-label='law of the casters']\").value === 'ideal'")
+
+
 def test_sizes_that_no_chair_has_are_said_beside_their_fields(page: Any, tmp_path: Path) -> None:
     rng = np.random.default_rng(1)
     lab.rim(tmp_path / "run01_SWL.csv", lab.rides(1)[0], 0.7, "l", rng)

@@ -7,12 +7,13 @@ from types import SimpleNamespace
 
 import pytest
 
+from wheelchair_fmu.model.choice import Choice, names
 from wheelchair_fmu.quantities import N_S_M, RAD, M, N, Parameter
 from wheelchair_fmu.report.content import layers
 from wheelchair_fmu.report.markup import marked
 from wheelchair_fmu.report.page import MODULES, asset, page, unpacked
 from wheelchair_fmu.report.tale import Story
-from wheelchair_fmu.report.words import particulars, sentence, value_text
+from wheelchair_fmu.report.words import ITS_OWN, law_told, laws_of, particulars, sentence, value_text
 
 TITLES = {"drag": "air that resists", "slope": "a floor that slopes"}
 LADDER = [
@@ -221,3 +222,22 @@ def test_a_note_on_the_page_has_no_statistics_in_it():
     note = "resistance.f_f comes out at 0.02, 2.2 standard deviations from the usual 0.01 ± 0.004"
     said = particulars(told("adequate", notes=[note]), {})[-1]
     assert said.endswith("comes out at 0.02, 2.2 times the ± away from the usual 0.01 ± 0.004.")
+
+
+def test_every_law_to_choose_from_has_words():
+    """Also where the words are of somebody's own law, of which nothing more is known."""
+    bundled = [(kind, name) for kind, some in names().items() for name in some if (kind, name) != ("equations", "extended")]
+    assert all(law_told(kind, name)["says"] not in ("", ITS_OWN) for kind, name in bundled)
+    assert law_told("tyre", "brush")["says"] == ITS_OWN
+
+
+@pytest.mark.parametrize(
+    ("choice", "expected"),
+    [
+        (Choice(), ["tyre linear", "caster ideal", "wheel rolling"]),
+        (Choice(tyre="dugoff", wheel="spinning"), ["tyre dugoff", "caster ideal", "wheel spinning"]),
+        (Choice(equations="paper"), ["tyre linear", "equations paper"]),
+    ],
+)
+def test_a_page_tells_the_laws_of_a_model(choice, expected):
+    assert [f"{law['of']} {law['name']}" for law in laws_of(choice)] == expected

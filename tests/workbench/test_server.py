@@ -314,6 +314,49 @@ def test_a_campaign_is_edited_undone_and_done_again(client):
     assert any("'kg' measures a mass" in f["text"] for f in bad["faults"])
 
 
+def test_another_law_is_a_step_that_can_be_undone(client, bench):
+    at = begun(client)
+    state = client.get(f"{at}/state").json()
+    assert state["laws"] == {"tyre": "linear", "caster": "ideal", "wheel": "rolling"}
+    assert {"tyre dugoff", "wheel spinning"} < {f"{law['of']} {law['name']}" for law in state["every_law"]}
+    assert all(law["says"] for law in state["every_law"])
+    session = Session(bench.root, at.rpartition("/")[2])
+    session.keep(session.variant().with_values({"chair.m": 90.0, "tyre.law": "magic_formula"}), "calibrated")
+    state = client.post(f"{at}/laws", json={"of": "caster", "name": "slipping"}).json()
+    assert state["laws"] == {"tyre": "magic_formula", "caster": "slipping", "wheel": "rolling"}
+    assert state["history"]["steps"][-1]["label"] == "caster law slipping" and 'caster = "slipping"' in state["variant"]
+    session.keep(session.variant().with_values({"caster.M": 0.2}), "calibrated")
+    state = client.post(f"{at}/laws", json={"of": "caster", "name": "ideal"}).json()
+    assert state["laws"]["caster"] == "ideal" and session.variant().values == {"chair.m": 90.0}
+    assert client.post(f"{at}/history", json={"by": -1}).json()["laws"]["caster"] == "slipping"
+    steps = len(session.history()["steps"])
+    assert len(client.post(f"{at}/laws", json={"of": "caster", "name": "slipping"}).json()["history"]["steps"]) == steps
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ({"of": "caster", "name": "idle"}, "did you mean 'ideal'"),
+        ({"of": "equations", "name": "paper"}, "no kind of law 'equations'"),
+        ({}, "no kind of law ''"),
+        ({"of": "caster", "name": "ideal"}, "is in this model and needs the caster law swivelling"),
+    ],
+)
+def test_a_law_that_cannot_be_is_refused(client, bench, asked, said):
+    at = begun(client)
+    session = Session(bench.root, at.rpartition("/")[2])
+    session.keep(session.variant().with_effects(["caster_friction"]), "+ caster_friction")
+    answer = client.post(f"{at}/laws", json=asked)
+    assert answer.status_code == 400 and said in answer.json()["error"]
+    assert session.laws()["caster"] == "swivelling"
+
+
+def test_laws_are_told_where_no_variant_can_be_read(client, bench):
+    session = Session(bench.root, begun(client).rpartition("/")[2])
+    session.variant_file.write_text("[laws\n")
+    assert session.laws()["tyre"] == "linear"
+
+
 def test_comments_and_layout_outlast_the_forms(client, bench):
     file = Session(bench.root, client.base.rpartition("/")[2]).campaign / "campaign.toml"
     text = "# as weighed in spring\n" + (SAMPLE / "campaign.toml").read_text()

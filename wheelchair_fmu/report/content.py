@@ -29,11 +29,13 @@ from ..model.stage import Effect
 from ..model.variant import Variant
 from ..model.wheelchair import REGIMES
 from ..quantities import N, Parameter, Unit
-from .words import in_full
+from .words import in_full, laws_of
 
 STARTS = (*START, *CASTERS)  # of which a model has those of its own states
 PATH = ("chair.x", "chair.y", "chair.psi", "caster.fl", "caster.fr")
 FORCES = ("chair.u", "chair.psi_dot", "force.F_srl", "force.F_srr")
+LOADS = tuple(f"load.{wheel}" for wheel in ("rl", "rr", "fl", "fr"))
+LIMITS = ("load.lifted", "push.beyond_friction")  # flags: where the model no longer holds
 
 
 def content(
@@ -72,7 +74,7 @@ def content(
         "calibrated": [_parameter(p) for p in variant.parameters() if p.name in diagnosis["calibrated"]],
         "constants": [_parameter(p) for e in factory.catalogue.values() for p in e.owned if p.name in _fitted(diagnosis)],
         "regimes": _regimes(variant),
-        "shown": list(dict.fromkeys((*PATH, *FORCES, *REGIMES.values()))),
+        "shown": list(dict.fromkeys((*PATH, *FORCES, *LOADS, *LIMITS, *REGIMES.values()))),
         "geometry": _geometry(campaign, variant),
         "tuning": TUNING,
         "tolerance": TOLERANCE,
@@ -150,6 +152,7 @@ def _model(variant: Variant, wasm: bytes, leads: bool) -> dict[str, Any]:
     vector = variant.vector()
     return {
         "effects": list(variant.effects),
+        "laws": laws_of(variant.choice),
         "wasm": b64encode(wasm).decode(),
         "parameters": [[p.name, float(v)] for p, v in zip(model.parameters, vector, strict=True)],
         "inputs": [[i.name, i.start] for i in model.inputs],
@@ -236,11 +239,11 @@ def _regimes(variant: Variant) -> list[dict[str, Any]]:
 
 
 def _geometry(campaign: Campaign, variant: Variant) -> dict[str, float]:
-    """Where the wheels are, for drawing the chair."""
+    """Where the wheels are, for drawing the chair, and what else its picture needs of it."""
     values = {p.name: p.default for p in variant.parameters()} | dict(variant.values) | campaign.known
     return {
         n.rpartition(".")[2]: values[n]
-        for n in ("chair.a", "chair.b", "chair.t_r", "chair.t_f", "chair.m", "chair.I_z", "wheel.R")
+        for n in ("chair.a", "chair.b", "chair.t_r", "chair.t_f", "chair.m", "chair.I_z", "wheel.R", "tyre.mu")
     }
 
 

@@ -9,6 +9,7 @@ from typing import Any
 from ..inference.decision.among_forces import FORCES
 from ..inference.policy import DEFAULT
 from ..inference.search.ties import grouped
+from ..model.choice import KINDS, Choice
 from ..model.generic import told_at
 from ..quantities import DisplayUnit, Quantity, Unit
 
@@ -34,9 +35,39 @@ CHANNELS = {
     "rider.momentum": "the body's momentum",
     "rider.force": "the force on the body",
 }
+LAWS = {
+    "tyre": {
+        "linear": "side force and aligning torque grow with slip, without a limit",
+        "dugoff": "the side force bends over as it comes near friction, and the aligning torque is that force times a trail",
+        "magic_formula": "side force and aligning torque each follow the Magic Formula, the force up to friction",
+    },
+    "caster": {
+        "ideal": "each trails its pivot at once",
+        "swivelling": "each swings behind its pivot as its patch rolls without side slip",
+        "slipping": "each has a tyre, inertia and friction of its own, swings round, kicks the chair and may shimmy",
+    },
+    "wheel": {
+        "rolling": "each turns as its hub moves, until a brake locks it",
+        "spinning": "the speed of each rim is a state: it locks under a brake and spins under a push, and both cost side grip",
+    },
+    "equations": {"paper": "those of the paper to the letter, for forward motion"},
+}  # what each law says, by what it is for
+ITS_OWN = "a law of somebody's own"
 UNIT = re.compile(r"(?<=\d )[A-Za-z]+(?:[./][A-Za-z]+\d?)+")  # behind a number, of several parts
 CENTRE = re.compile(r"\bCM\b")
 NAME = re.compile(r"\b[a-z]\w*(?:\.\w+)*")  # what may be the code name of a parameter or of an effect
+
+
+def laws_of(choice: Choice) -> list[dict[str, str]]:
+    """The laws of a model, by what each is for, with what it says; the paper's own equations have those of casters and wheels
+    in them."""
+    if choice.equations == "paper":
+        return [law_told("tyre", choice.tyre), law_told("equations", choice.equations)]
+    return [law_told(kind, getattr(choice, kind)) for kind in KINDS]
+
+
+def law_told(kind: str, name: str) -> dict[str, str]:
+    return {"of": kind, "name": name, "says": LAWS.get(kind, {}).get(name, ITS_OWN)}
 
 
 def sentence(diagnosis: Mapping[str, Any], titles: Mapping[str, str], records: Mapping[str, Quantity] | None = None) -> str:

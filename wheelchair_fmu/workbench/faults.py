@@ -45,6 +45,7 @@ CURES: tuple[tuple[str, str], ...] = (
     (r"write columns\..*", f"choose its column under “{COLUMNS}”"),
     (r"write axes = .*--axes", f"choose the axes under “{RUNS}”"),
     (r"fill it in, or cut the run by from and to", "fill it in, or leave out the rows in which it is missing"),
+    (r"write sensor\..*\.at = .*", "give two numbers in metres, as 0.09, 0.04: forward, and to the right"),
     (r"give two numbers, \[x, y\] in m", "give two numbers in metres, as 0.09, 0.04: forward, and to the right"),
     (r"export it as CSV, or name its format", f"export it as CSV and drop that, and take this one out under “{RUNS}”"),
     (r"export it again, or leave it out", f"export it again and drop it here, or take it out under “{RUNS}”"),
@@ -62,6 +63,7 @@ def told(fault: Fault) -> dict[str, Any]:
     "file", where it is of one; "at": the key of campaign.toml that it is of}."""
     cure = next((words for pattern, words in CURES if re.fullmatch(pattern, fault.cure)), fault.cure)
     fact = re.sub(r"^no push force (F_r[lr])$", lambda m: f"{PUSHES[m[1]]} is missing", short(fault.fact))
+    fact = re.sub(r"^\[sensor\] (\w+)(?:\.at)? = .*?(?= is (?:no point|more than))", r"where \1 is read", fact)
     fact = _in_words(fact.replace(", which [columns] renames", ""))
     what = fact if cure == NOTHING else f"{fact}; {cure}"
     line = "" if fault.line is None or (fault.in_run and fault.line == 1) else f" line {fault.line}"

@@ -118,11 +118,15 @@ class Jobs:
     def start(self, session: str, job: Job, folder: Path) -> None:
         """Raises UsageError where the session is busy."""
         with self._starting:
-            now = self._jobs.get(session)
-            if now and now.state == "running":
-                raise UsageError(f"{now.kind} is still running; wait for it, or cancel it")
+            self.refuse_busy(session)
             job.usual, self._jobs[session] = self._took.get((session, job.kind)), job
         threading.Thread(target=self._run, args=(session, job, folder), daemon=True).start()
+
+    def refuse_busy(self, session: str) -> None:
+        """Raises UsageError where something is being done."""
+        now = self._jobs.get(session)
+        if now and now.state == "running":
+            raise UsageError(f"{now.kind} is still running; wait for it, or cancel it")
 
     def _run(self, session: str, job: Job, folder: Path) -> None:
         job.run(folder)

@@ -31,6 +31,7 @@ from ..inference.estimation.fit import AT_BOUND
 from ..inference.models.factory import CALIBRATED
 from ..inference.subject import known_parameters
 from ..model.arithmetic import shown as cut
+from ..model.choice import KINDS, Choice, names
 from ..model.dimensions import orders, targets, unit_of_q, vocabulary
 from ..model.effects import bundled
 from ..model.expression import effect_file
@@ -41,7 +42,7 @@ from ..model.wheelchair import assemble
 from ..quantities import Quantity
 from ..report import preview
 from ..report.page import ASSETS, asset
-from ..report.words import value_text
+from ..report.words import law_told, value_text
 from . import faults
 from .bodies import Json, json_object, json_texts, number
 from .guard import Guard
@@ -56,7 +57,7 @@ LONGEST_TITLE = 200
 FORBIDDEN = '"\\{}'  # in a title, which goes into a file
 EARLIER = 12  # pieces of work that are listed
 NAMED = 4  # files that are named of those left out
-KNOWN = ("chair.", "tyre.C_", "resistance.", "wheel.")  # what a user may know of a chair
+KNOWN = ("chair.", "tyre.C_", "tyre.mu", "resistance.", "wheel.")  # what a user may know of a chair
 POLICY = (
     "default-src 'self'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
     "frame-ancestors 'self'"
@@ -113,6 +114,7 @@ class Workbench:
             Route(f"{at}/jobs", self.shown(self.start_job), methods=["POST"]),
             Route(f"{at}/jobs", self.shown(self.cancel_job), methods=["DELETE"]),
             Route(f"{at}/history", self.shown(self.go), methods=["POST"]),
+            Route(f"{at}/laws", self.shown(self.choose_law), methods=["POST"]),
             Route(f"{at}/expression", self.shown(self.check_expression), methods=["POST"]),
             Route(f"{at}/effects", self.shown(self.write_effect), methods=["POST"]),
             Route(f"{at}/report", self.shown(self.report)),
@@ -226,6 +228,8 @@ class Workbench:
             "channels": channel_list(),
             "noise": noise,
             "parameters": self.parameters,
+            "laws": session.laws(),
+            "every_law": _every_law(),
             "history": session.history(),
             "variant": session.variant_text(),
             "effects": [{"id": e.id, "title": e.title, "own": e.id in own} for e in catalogue.values()],
@@ -383,6 +387,15 @@ class Workbench:
             raise UsageError(f"by = {cut(str(by))}; give -1 to undo, 1 to redo")
         return await self.change(session, partial(session.go, by))
 
+    async def choose_law(self, request: Request, session: Session) -> Response:
+        asked = await json_object(request)
+
+        def chosen() -> None:
+            self.jobs.refuse_busy(session.id)
+            session.choose(str(asked.get("of", "")), str(asked.get("name", "")))
+
+        return await self.change(session, chosen)
+
     # -- effects --------------------------------------------------------------------------------------------
 
     async def check_expression(self, request: Request, session: Session) -> Response:
@@ -454,6 +467,11 @@ def _paths(told: object, files: Sequence[UploadFile]) -> list[str]:
 def _word(name: str, quantity: Quantity, known: Mapping[str, int]) -> dict[str, Any]:
     """What an expression may name or act on, and when it becomes known."""
     return {"name": name, "unit": quantity.unit.name, "meaning": quantity.meaning, "order": known[name]}
+
+
+def _every_law() -> list[dict[str, str]]:
+    """The laws to choose from, by what each is for, with what it says."""
+    return [law_told(kind, name) for kind, some in names(Choice()).items() if kind in KINDS for name in some]
 
 
 def _added(effect: str, printed: str, session: Session) -> dict[str, Any]:

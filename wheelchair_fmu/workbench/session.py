@@ -21,6 +21,7 @@ import time
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path, PurePosixPath
 from typing import Any, BinaryIO
@@ -30,12 +31,13 @@ import numpy as np
 
 from ..campaign import CHANNELS, INPUTS, Judged, judged, read
 from ..campaign.binding import split
-from ..campaign.channels import BY_NAME, TIME
+from ..campaign.channels import BY_NAME, MOUNTED, TIME
 from ..campaign.formats import open_recording
 from ..campaign.layout import relaid
 from ..contracts.own import checked, text_of, variant_in
 from ..contracts.trust import remember
 from ..errors import CampaignError, EffectError, Failure, ModelError, UsageError, unknown
+from ..model.choice import KINDS, names, serves
 from ..model.effects import bundled, sources
 from ..model.stage import Effect
 from ..model.variant import Variant, programs_in, variant_text
@@ -460,6 +462,27 @@ class Session:
     def variant_text(self) -> str:
         return self.variant_file.read_text(encoding="utf-8") if self.history()["steps"] else variant_text(Variant())
 
+    def laws(self) -> dict[str, str]:
+        """The laws of the model at hand, by what each is for, as its file has them; the usual ones where it names none, or is
+        gone."""
+        usual = {kind: str(getattr(Variant().choice, kind)) for kind in KINDS}
+        with suppress(OSError, ValueError, Failure):
+            named = tomllib.loads(self.variant_text()).get("laws")
+            given = named if isinstance(named, Mapping) else {}
+            return {kind: str(given.get(kind, law)) for kind, law in usual.items()}
+        return usual
+
+    def choose(self, kind: str, name: str) -> None:
+        """One step more, by another law. Raises UsageError for an unknown one, and for one by which an effect of this model
+        cannot act."""
+        before = self.variant()
+        if kind not in KINDS:
+            raise unknown("kind of law", kind[:40], KINDS)
+        if name not in names(before.choice)[kind]:
+            raise unknown(f"{kind} law", name[:40], names(before.choice)[kind])
+        if name != getattr(before.choice, kind):
+            self.keep(_by_law(before, kind, name), f"{kind} law {name}".replace("_", " "))
+
     def known(self) -> dict[str, float]:
         """What the campaign file says of the chair. Raises Failure where the campaign has faults."""
         try:
@@ -481,6 +504,17 @@ def prune(root: Path, days: float = KEPT) -> list[str]:
             if name and not session.there:
                 gone.append(name)
     return gone
+
+
+def _by_law(chair: Variant, kind: str, name: str) -> Variant:
+    """The chair by another law, without the values that only the law before had."""
+    after = replace(chair, choice=chair.choice.with_laws({kind: name}))
+    for effect in after.active():
+        for of, needed in effect.needs.items():
+            if not serves(after.choice, of, needed):
+                raise UsageError(f"“{effect.title}” is in this model and needs the {of} law {needed}")
+    there = {p.name for p in after.parameters()}
+    return replace(after, values={n: v for n, v in chair.values.items() if n in there})
 
 
 def _thinned(values: np.ndarray) -> list[float | None]:
@@ -550,5 +584,14 @@ def _guess(header: str) -> str | None:
 
 def channel_list() -> list[dict[str, Any]]:
     """What a column may be."""
-    every = (TIME, *INPUTS, *CHANNELS)
-    return [{"name": c.name, "unit": c.unit.name, "meaning": c.meaning, "mirrored": c.iso_sign < 0} for c in every]
+    every, placed = (TIME, *INPUTS, *CHANNELS), {name for names in MOUNTED.values() for name in names}
+    return [
+        {
+            "name": c.name,
+            "unit": c.unit.name,
+            "meaning": c.meaning,
+            "mirrored": c.iso_sign < 0,
+            "placed": c.name in placed,  # where it is read makes a difference
+        }
+        for c in every
+    ]

@@ -17,7 +17,7 @@ import { kept, refit, starts } from "page/refit";
 import { Scene } from "page/scene";
 import { Story } from "page/story";
 import { Timeline } from "page/timeline";
-import { channelOf, runOf, stepOf } from "page/words";
+import { channelOf, lawsOf, runOf, stepOf } from "page/words";
 
 const REST = 180; // ms without a change after which the numbers are made exact
 const WRITTEN = 250; // ms after which the address follows
@@ -353,7 +353,7 @@ class App {
     if (!result?.predicted) return;
     const run = this.campaign.runs[this.shown.run], { geometry } = this.campaign, at = result.results;
     const moved = (r) => ({ x: r["chair.x"], y: r["chair.y"], psi: r["chair.psi"] });
-    this.motion = { time: run.time, model: moved(at), measured: reckoned(run, at), before: before && before !== result ? moved(before.results) : null, results: at, inputs: run.inputs,
+    this.motion = { time: run.time, model: moved(at), measured: reckoned(run, at), before: before && before !== result ? moved(before.results) : null, results: at, inputs: run.inputs, friction: this.values["tyre.mu"] ?? run.set["tyre.mu"] ?? geometry.mu,
       rolled: rolled(run.time, at, geometry.t_r), lacking: lacking(run, result, { mass: this.values["chair.m"] ?? geometry.m, inertia: this.values["chair.I_z"] ?? geometry.I_z }) };
     this.scene.show(this.motion, this.look ??= look(), run.name);
     const pinned = this.pins.kept.map((k) => [k.label, k.results?.[this.shown.run]]).filter(([, r]) => r?.predicted);
@@ -365,6 +365,7 @@ class App {
   drawAll(rested) {
     write(byId("now-fit"), rms(this.now.fit));
     write(byId("now-heldout"), rms(this.now.heldout));
+    this.lawful();
     this.figures.follow();
     this.story.draw(rested);
     if (!rested) return;
@@ -372,6 +373,13 @@ class App {
     this.pins.show({ values: this.values, errors: this.now });
     const spoken = `Error on runs held out ${rms(this.now.heldout)}, on fitted runs ${rms(this.now.fit)}; 1.00 is noise alone.`;
     write(byId("said"), spoken);
+  }
+
+  /** The laws of the model that runs, which is the lightest that has what is put in. */
+  lawful() {
+    const { effects, models } = this.campaign, on = effects.filter((e) => e.parameters.some((p) => this.values[p.name])).map((e) => e.id);
+    const model = models.find((m) => on.every((effect) => m.effects.includes(effect))) ?? models[0];
+    write(byId("laws"), `Laws of this model: ${lawsOf(model.laws)}.`);
   }
 
   /** Settings that are kept: what of them is not known is simulated beside. */

@@ -3,12 +3,12 @@
 import { indexed } from "page/dom";
 
 const NS = "http://www.w3.org/2000/svg", XML = "http://www.w3.org/XML/1998/namespace";
-const NAMES = ["ink", "faint", "line", "paper", "measured", "model", "before", "error", "band", "accent", "good", "pin-a", "pin-b", "pin-c"];
+const NAMES = ["ink", "faint", "line", "paper", "measured", "model", "before", "error", "band", "accent", "good", "warn", "pin-a", "pin-b", "pin-c"];
 
 /** Colours on paper, whatever the theme; measured, model, before and error mean the same in every figure. */
 export const PRINT = {
   ink: "#111111", faint: "#505050", line: "#d9d9d9", paper: "#ffffff", measured: "#767676", model: "#0072b2", before: "#9a6fb0",
-  error: "#d55e00", band: "#dcebf5", accent: "#0067a8", good: "#00684a", "pin-a": "#7a4b1e", "pin-b": "#66700a",
+  error: "#d55e00", band: "#dcebf5", accent: "#0067a8", good: "#00684a", warn: "#9a4a00", "pin-a": "#7a4b1e", "pin-b": "#66700a",
   "pin-c": "#b3134f", print: true,
 };
 

@@ -18,6 +18,8 @@ const FIRST = 12; // effects in the forest plot
 const LOW = 230; // px: height of curves below which no error stands under them, as its label has no room
 const AXES = 92; // px: what curves have above, between and below them
 const ADDS_UP = ["x", "y", "yaw"]; // channels in which noise of the pushes adds up
+const WHEELS = { rl: "left rear wheel", rr: "right rear wheel", fl: "left caster", fr: "right caster" };
+const OF_THE_BODY = { "rider.s": "the body’s motion forward [m]", "rider.momentum": "the body’s momentum [N.s]", "stroke.phase": "strokes since the first" };
 const LATE = 10; // samples from the end of a run
 
 /** Are there heights of a likelihood enough to see how it rises from the estimate? Where a search stopped at the bounds of other values it
@@ -191,7 +193,9 @@ export class Figures {
       },
       columns: () => ({ "time [s]": app.motion.time, "x [m]": app.motion.model.x, "y [m]": app.motion.model.y, "psi [rad]": app.motion.model.psi,
         ...(app.motion.measured ? { "x measured [m]": app.motion.measured.x, "y measured [m]": app.motion.measured.y } : {}),
-        ...(app.motion.before ? { "x before [m]": app.motion.before.x, "y before [m]": app.motion.before.y } : {}) }),
+        ...(app.motion.before ? { "x before [m]": app.motion.before.x, "y before [m]": app.motion.before.y } : {}),
+        ...Object.fromEntries(Object.entries(WHEELS).map(([wheel, words]) => [`load of the ${words} [N]`, app.motion.results[`load.${wheel}`]])),
+        ...Object.fromEntries(Object.entries(OF_THE_BODY).filter(([name]) => name in app.motion.inputs).map(([name, words]) => [words, app.motion.inputs[name]])) }),
       caption: () => {
         const { measured, model } = app.motion ?? {};
         if (!model) return "";

@@ -3,7 +3,7 @@
 import { h, symbols } from "page/dom";
 import { course, extent, svg } from "page/draw";
 import { decimal, significant, unitText } from "page/numbers";
-import { capital, channelOf, listed } from "page/words";
+import { bearer, capital, channelOf, listed } from "page/words";
 
 const ROLES = { fit: "fit", holdout: "held out" };
 const ROLLING = /^(F_r|wheel_)/; // channels that may be logged as torques or as turning
@@ -11,6 +11,7 @@ const SAID = 2; // faults that are told in one place
 const FEW = 6; // runs that are shown without asking where something is wrong
 const MANY = 12; // columns that nothing is taken from, above which they are folded
 const WIDE = 110, HIGH = 30; // px of a signal beside its column
+const CENTRE = "the centre of mass", AXLE = "the middle of the rear axle"; // from where points count
 const PUSHES = ["F_rl", "F_rr"];
 
 const table = (kind, heads, rows) => {
@@ -96,14 +97,28 @@ export function columns(bench) {
 
 /** A device's name and where it sits. */
 function device(bench, i) {
-  const { device: name, at, columns = {} } = bench.state.campaign.recording[i], [first, ...more] = filesOf(bench.state.campaign, name);
+  const { device: name, at, columns = {}, markers = {} } = bench.state.campaign.recording[i], [first, ...more] = filesOf(bench.state.campaign, name);
   const title = h("h3", {}, name, first && first !== name ? h("small", {}, more.length ? `${first} and ${more.length} more` : first) : null);
-  if (!("a_x" in columns || "a_y" in columns)) return title; // of which it makes no difference
+  if (!Object.keys(markers).length && !placed(bench, columns)) return title; // of which it makes no difference
   const change = (words) => bench.save((c) => {
     if (words) c.recording[i].at = pointOf(words) ?? words;
     else delete c.recording[i].at;
   });
-  return h("div", {}, title, h("p", { class: "row" }, h("label", {}, "where it sits: m forward, m to the right of the centre of mass ", text(`where ${name} sits`, Array.isArray(at) ? at.join(", ") : at, change, { size: 12, placeholder: "as at the centre" })), wrong({ "data-at": `recording.${i}.at` })));
+  return h("div", {}, title, h("p", { class: "row" }, h("label", {}, `where it sits: m forward, m to the right of ${Object.keys(markers).length ? AXLE : CENTRE} `, text(`where ${name} sits`, Array.isArray(at) ? at.join(", ") : at, change, { size: 12, placeholder: Object.keys(markers).length ? "as on the axle" : "as at the centre" })), wrong({ "data-at": `recording.${i}.at` })));
+}
+
+/** Is any of these channels one that reads otherwise at another place? */
+const placed = (bench, columns) => bench.state.channels.some((c) => c.placed && c.name in columns);
+
+/** Where one channel is read, of which the rest of its device need not sit. */
+function point(bench, channel, record) {
+  const { sensor } = bench.state.campaign, at = sensor?.[channel]?.at, change = (words) => bench.save((c) => {
+    const { [channel]: _, ...rest } = c.sensor ?? {};
+    c.sensor = words ? { ...rest, [channel]: { at: pointOf(words) ?? words } } : rest;
+    if (!Object.keys(c.sensor).length) delete c.sensor;
+  });
+  const usual = record ? "as its device" : "at the centre";
+  return [h("label", { class: "read-at", title: `m forward, m to the right of ${CENTRE}` }, "read at: m forward, m to the right ", text(`where ${channelOf(channel)} is read`, Array.isArray(at) ? at.join(", ") : at, change, { size: 9, placeholder: usual })), wrong({ "data-at": `sensor.${channel}` })];
 }
 
 /** Two numbers, as "0.09, 0.04" or "0,09 0,04": a comma parts them where nothing else does. Null for any other words. */
@@ -130,7 +145,7 @@ function columnRow(bench, header, place, given, options, record) {
   rolls();
   const files = headers[header].filter((f) => !place.files || place.files.has(f)), seen = signals[header] ?? {}, first = files.find((f) => seen[f]);
   const told = bench.state.faults.some((f) => f.column === header && files.includes(f.file)); // which has to be in sight
-  return h("tr", { "data-used": channel || told ? "" : null }, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`), wrong({ "data-column": header, "data-files": files.join("\n") })), h("td", {}, signal(first ? seen[first] : [])), h("td", {}, which, bench.state.channels.some((c) => c.name === channel && c.mirrored) && (record?.axes ?? bench.state.campaign.campaign?.axes) === "ISO-8855" ? h("small", {}, "as in the file, where y points to the left; turned for the model") : null, channel && channel !== "time" ? h("label", { class: "turned", title: "what is positive in the file is negative here" }, turned, was.sign < 0 ? "turned round: what is positive in the file is negative here" : "turn it round") : null), h("td", {}, unit), h("td", {}, radius));
+  return h("tr", { "data-used": channel || told ? "" : null }, h("th", { scope: "row" }, header, h("small", {}, files.length === 1 ? files[0] : `${files.length} files`), wrong({ "data-column": header, "data-files": files.join("\n") })), h("td", {}, signal(first ? seen[first] : [])), h("td", {}, which, bench.state.channels.some((c) => c.name === channel && c.mirrored) && (record?.axes ?? bench.state.campaign.campaign?.axes) === "ISO-8855" ? h("small", {}, "as in the file, where y points to the left; turned for the model") : null, channel && channel !== "time" ? h("label", { class: "read-at", title: "what is positive in the file is negative here" }, turned, was.sign < 0 ? "turned round: what is positive in the file is negative here" : "turn it round") : null, placed(bench, { [channel]: true }) ? point(bench, channel, record) : null), h("td", {}, unit), h("td", {}, radius));
 }
 
 /** A column's values over time, small, with the greatest and the least of them. */
@@ -196,7 +211,15 @@ export function chair(bench) {
   });
   const open = Array.isArray(campaign.recording) && ["m", "a", "b"].some((key) => campaign.chair?.[key] === undefined); // which no file tells
   return h("details", { open: open || faulty(bench, ...parameters.map((p) => p.name)) }, h("summary", {}, "What is known of the chair"),
-    h("p", { class: "hint" }, "What you leave empty is taken as in grey, and calibrated where runs tell it."), h("div", { class: "grid" }, fields));
+    h("p", { class: "hint" }, "What you leave empty is taken as in grey, and calibrated where runs tell it."), h("div", { class: "grid" }, fields), laws(bench));
+}
+
+/** Which laws the model at hand has; to choose another makes another model, which can be undone. */
+function laws(bench) {
+  const { laws: chosen, every_law: every } = bench.state, of = (kind) => every.filter((law) => law.of === kind), says = (kind) => every.find((law) => law.of === kind && law.name === chosen[kind])?.says ?? "";
+  const one = (kind) => h("label", {}, h("span", {}, capital(`law of the ${bearer(kind)}`), h("small", {}, says(kind))),
+    select(`law of the ${bearer(kind)}`, Object.fromEntries([...new Set([...of(kind).map((law) => law.name), chosen[kind]])].map((name) => [name, name.replaceAll("_", " ")])), chosen[kind], (name) => bench.law(kind, name)));
+  return h("div", { class: "laws" }, h("p", { class: "hint" }, "Laws say how forces follow from motion. Another one makes another model, by which the next calibration and diagnosis go; undo brings the one before back."), h("div", { class: "grid" }, Object.keys(chosen).map(one)));
 }
 
 /** How well it is known: a standard deviation about each value. */

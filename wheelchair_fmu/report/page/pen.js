@@ -1,8 +1,8 @@
 // What draws on a canvas, as far as the scene needs it, on paper instead: the same calls make SVG, for files of lines and letters.
 
-import { svg } from "page/draw";
+import { svg, text } from "page/draw";
 
-const STATE = { fillStyle: "none", strokeStyle: "none", lineWidth: 1, lineCap: "butt", globalAlpha: 1, dash: [], turns: "" };
+const STATE = { fillStyle: "none", strokeStyle: "none", lineWidth: 1, lineCap: "butt", globalAlpha: 1, font: "12px", textAlign: "start", dash: [], turns: "" };
 
 export class Pen {
   constructor() {
@@ -35,5 +35,10 @@ export class Pen {
 
   fill() { this.put({ fill: this.fillStyle, "fill-opacity": this.globalAlpha }); }
   stroke() { this.put({ fill: "none", stroke: this.strokeStyle, "stroke-width": this.lineWidth, "stroke-opacity": this.globalAlpha, "stroke-linecap": this.lineCap, "stroke-dasharray": this.dash.length ? this.dash.join(" ") : null }); }
+  fillRect(x, y, w, h) { this.d = `M${x} ${y}H${x + w}V${y + h}H${x}Z`; this.fill(); }
+  fillText(words, x, y) {
+    const anchor = { center: "middle", right: "end" }[this.textAlign] ?? "start";
+    this.drawn.push(text(x, y, words, this.fillStyle, anchor, { "font-size": parseFloat(this.font.match(/[\d.]+px/)), "font-weight": this.font.startsWith("bold") ? 600 : null }));
+  }
   put(how) { this.drawn.push(svg("path", { d: this.d, transform: this.turns || null, ...how })); }
 }

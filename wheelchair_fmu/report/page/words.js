@@ -43,6 +43,13 @@ export const channelOf = (name) => name.replace(/^wheel_(speed|angle)_([lr])$/, 
 
 /** A name in a sentence: one that is written from right to left leaves the order of the words about it as it is. */
 export const isolated = (name) => (/[\p{Script=Arabic}\p{Script=Hebrew}\p{Script=Syriac}\p{Script=Thaana}]/u.test(name) ? `\u2068${name}\u2069` : name);
+const BEARERS = { tyre: "tyres", caster: "casters", wheel: "rear wheels", equations: "equations" };
+
+/** What a law is for, as the thing that has it. */
+export const bearer = (kind) => BEARERS[kind] ?? kind;
+
+/** "tyres linear (…); casters ideal (…)" of laws [{of, name, says}]. */
+export const lawsOf = (laws) => laws.map(({ of, name, says }) => `${bearer(of)} ${name.replaceAll("_", " ")} (${says})`).join("; ");
 export const runOf = (run) => (run.role === "holdout" ? `${isolated(run.name)} (held out)` : isolated(run.name));
 
 /** "a, b and c" */

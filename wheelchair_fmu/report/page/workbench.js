@@ -83,6 +83,11 @@ class Workbench {
     await this.take(() => ask("state"));
   }
 
+  /** Another law for the model at hand. */
+  async law(of, name) {
+    if (!(await this.take(() => send("POST", "laws", { of, name })))) this.showForms(); // refused: the law is what it was
+  }
+
   /** Ask the server for something that answers with the new state, and show it all. One after the other: an answer that was
    *  overtaken on its way would show an older state over a newer one. */
   take(act, doing = "Looking at the recordings …") {
@@ -199,7 +204,7 @@ class Workbench {
     byId("preview").href = `${this.here}/preview`;
     this.ready = files.length > 0 && !errors.length;
     const assumed = Object.entries(PLACES).filter(([name]) => campaign?.chair?.[name] === undefined).map(([, words]) => words);
-    const placeless = (Array.isArray(campaign?.recording) ? campaign.recording : []).filter((r) => r.at === undefined && ["a_x", "a_y"].some((c) => c in (r.columns ?? {}))).map((r) => r.device);
+    const placeless = (Array.isArray(campaign?.recording) ? campaign.recording : []).filter((r) => r.at === undefined && this.state.channels.some((c) => c.placed && c.name in (r.columns ?? {}) && !campaign.sensor?.[c.name])).map((r) => r.device);
     byId("assumed").hidden = !this.ready || (!assumed.length && !placeless.length);
     byId("assumed").textContent = [assumed.length ? `Not given, and so taken from another chair: ${listed(assumed)}. Measure it and write it above under “What is known of the chair”.` : "",
       placeless.length ? `Where ${listed(placeless)} ${placeless.length > 1 ? "sit" : "sits"} was not given, and so counts as at the centre of mass: write it above under “Columns and their units”.` : "", "A wrong value there passes for an effect, or hides one."].filter(Boolean).join(" ");
@@ -212,6 +217,7 @@ class Workbench {
     byId("add").disabled ||= !byId("effect").value;
     write(byId("why"), this.ready ? "" : this.state.files.length ? (this.unread ? "This can begin once it is known which column is what." : "This can begin once nothing is left to mend above.") : "This can begin once there are recordings.");
     for (const id of ["import", "sample"]) byId(id).disabled = busy;
+    for (const select of document.querySelectorAll(".laws select")) select.disabled = busy;
     for (const b of document.querySelectorAll("[data-add], [data-again]")) b.disabled = busy || !this.ready;
     const own = byId("own").querySelector("[type=submit]");
     own.disabled = busy;
