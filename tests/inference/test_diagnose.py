@@ -64,8 +64,24 @@ def test_its_json_has_the_keys_that_are_fixed(sampled):
     assert all(row.keys() >= ROW for row in content["ranking"])
     assert content["ranking"][0]["effect"] == content["effects"][0]
     parameter = content["ranking"][0]["parameters"]["D"]
-    assert parameter.keys() == {"estimate", "se", "unit", "smallest_interesting", "interval"} and parameter["unit"] == "N"
+    assert parameter.keys() == {"estimate", "se", "unit", "smallest_interesting", "made_up_by", "interval"}
+    assert parameter["unit"] == "N"
     assert {r["effect"] for r in content["ranking"]} >= {"toe_misalignment", "floor_cross_slope", "camber_misalignment"}
+
+
+def test_the_ranking_tells_which_values_make_up_for_what_is_hidden_in_the_fit(sampled):
+    """A kilogram of spinning wheels is one of mass on straight ways; turned patches are casters that drag more, and rear wheels
+    that drag less, by what tests/model/test_alike.py has of a chair that rolls."""
+    rows = {row["effect"]: row for row in as_json(sampled)["ranking"]}
+
+    def made(effect, parameter):
+        return {m["name"]: m["change"] for m in rows[effect]["parameters"][parameter]["made_up_by"]}
+
+    assert made("wheel_inertia", "m")["chair.m"] == pytest.approx(1.0, abs=0.02)
+    turned = made("turn_slip", "M")
+    assert turned["resistance.f_f"] == pytest.approx(0.0165 * 0.5, rel=0.05)
+    assert turned["resistance.f_r"] == pytest.approx(-0.0132 * 0.5, rel=0.05)
+    assert next(iter(made("inflation_pressure", "dp"))) == "tyre.C_lambda"
 
 
 def test_the_ranking_tells_the_last_model(sampled):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.model.effects.chair import run
-from wheelchair_fmu.model.alike import EFFECTIVE_MASS, READING_OFFSET, WHOLE_SCALE, look_alikes
+from wheelchair_fmu.model.alike import EFFECTIVE_MASS, READING_OFFSET, TURNED_PATCHES, WHOLE_SCALE, look_alikes
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.wheelchair import base_parameters
 
@@ -41,6 +41,28 @@ START = {"start.u": 1.2, "start.psi_dot": 0.3}
 
 def cosine(a: np.ndarray, b: np.ndarray) -> float:
     return float(a @ b / np.linalg.norm(a) / np.linalg.norm(b))
+
+
+SLALOM = {"push.F_rl": lambda t: 6 + 8 * np.sin(1.5 * t), "push.F_rr": lambda t: 6 - 8 * np.sin(1.5 * t)}
+
+
+@pytest.mark.parametrize(("pushes", "share"), [(PUSHES, 0.99), (SLALOM, 0.999)])
+def test_a_chair_that_rolls_does_not_tell_patches_that_are_turned_from_casters_that_drag_more(pushes, share):
+    """A caster at δ = a ψ'/u drags f_f N_f aside, a moment that grows with ψ'/u as that of a turned patch does: of what 1 N m
+    does nothing is left but a little where the chair is slow. Each coefficient alone also brakes the chair, and does not."""
+    assert TURNED_PATCHES in bundled()["turn_slip"].alike
+    defaults = {p.name: p.default for p in base_parameters()}
+    usual = {**{name: defaults[name] for name in TURNED_PATCHES.with_parameters}, "effect.turn_slip.M": 0.5}
+
+    def change(name: str) -> np.ndarray:
+        ways = ({**START, **usual, name: usual[name] + side} for side in (1e-3, -1e-3))
+        one, other = (run(values, pushes, T=6, among=["turn_slip"]) for values in ways)
+        return np.concatenate([(one[read] - other[read]) / 2e-3 for read in READ])
+
+    patches, drags = change("effect.turn_slip.M"), np.stack([change(n) for n in TURNED_PATCHES.with_parameters], axis=1)
+    for columns, least, most in (([0, 1], share, 1.0), ([0], 0.0, 0.05), ([1], 0.0, 0.05)):
+        left = patches - drags[:, columns] @ np.linalg.lstsq(drags[:, columns], patches, rcond=None)[0]
+        assert least <= 1 - left @ left / (patches @ patches) <= most
 
 
 @pytest.mark.parametrize(("angle", "offset"), [("pitch", "x"), ("roll", "y")])

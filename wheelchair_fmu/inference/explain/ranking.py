@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..decision.verdict import Diagnosis
+from ..estimation.fit import Fit
 from ..estimation.interval import NORMAL
 from ..estimation.score import Score
 from ..estimation.statistics import cosines, estimates, finite
@@ -15,6 +16,7 @@ from ..search.candidate import Candidate
 from ..search.rounds import Round
 
 SIGNIFICANT = 0.05  # level at which a slight effect is said to show
+MAKERS = 3  # values that are said to make up for an effect
 RIVALS = 4  # that are listed of an effect, if their
 ALIKE_AT_ALL = 0.5  # cosine is larger
 
@@ -70,7 +72,8 @@ def ranking(d: Diagnosis) -> list[dict[str, Any]]:
     rivals = _rivals(first.scores)
     nobody: tuple[Candidate | None, Round] = (None, first)
     seen = {e: candidates.get(e, nobody) for e in order}
-    return [_row(d, scores[e], seen[e][0], seen[e][1], rivals.get(e, [])) for e in order]
+    measured_in = {s.effect: r for r in (*d.rounds, first) for s in r.scores}
+    return [_row(d, scores[e], seen[e][0], seen[e][1], rivals.get(e, []), measured_in[e].fit) for e in order]
 
 
 def groups(d: Diagnosis) -> list[dict[str, Any]]:
@@ -91,18 +94,21 @@ def groups(d: Diagnosis) -> list[dict[str, Any]]:
     ]
 
 
-def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dict[str, Any]]) -> dict[str, Any]:
+def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dict[str, Any]], beside: Fit) -> dict[str, Any]:
+    """An effect's row; its score was taken `beside` a fit."""
     records = d.models.factory.records
     estimate, se = _estimate(d, s, c)
+    made_up = [_made_up(d, beside, change) for change in s.imitated.T]
     parameters = {
         name.rpartition(".")[2]: {
             "estimate": float(v),
             "se": finite(e),
             "unit": records[name].unit.name,
             "smallest_interesting": records[name].smallest_interesting,
+            "made_up_by": made_up[i],
             **({"interval": list(d.intervals[name])} if name in d.intervals else {}),
         }
-        for name, v, e in zip(s.names, estimate, se, strict=True)
+        for i, (name, v, e) in enumerate(zip(s.names, estimate, se, strict=True))
     }
     before = r.heldout.rms if r.heldout.runs else float("nan")
     return {
@@ -121,6 +127,14 @@ def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dic
         "one_form_of": _cause(d, s.effect),
         "in_model": s.effect in d.included,
     }
+
+
+def _made_up(d: Diagnosis, beside: Fit, change: np.ndarray) -> list[dict[str, Any]]:
+    """Fitted values that would make up for δ of a parameter, and by what change (m,): those that would be furthest out."""
+    records, spread = d.models.likelihood(d.included).records, np.sqrt(np.maximum(np.diag(beside.covariance), 0))
+    far = np.divide(abs(change), spread, out=np.zeros(len(change)), where=spread > 0)
+    most = [i for i in np.argsort(-far, kind="stable")[:MAKERS] if far[i] > 0]
+    return [{"name": n, "change": float(change[i]), "unit": records[n].unit.name} for i in most if (n := beside.names[i])]
 
 
 def _cause(d: Diagnosis, effect: str) -> str | None:

@@ -8,8 +8,9 @@ const FIRST = 8; // effects that are open without asking
 const PLAIN = 3; // standard errors from nothing, from which the data show something
 const SEEN = 0.05; // a p below which the data show something like an effect that was not chosen
 const KEY = `Sizes are of an effect put in alone, or beside what was put in before it. Would be seen: in how many of such campaigns it would show at the
-  smallest size that matters. Hidden in the fit: how much of what it does calibrated values can imitate. Held out: the error on runs held out,
+  smallest size that matters. Hidden in the fit: how much of what it does calibrated values can imitate, and where that is most of it by which values. Held out: the error on runs held out,
   noise = 1, before and after it was put in. Alike: effects that do nearly the same to the readings; 1 is just the same.`;
+const MOSTLY = 0.5, IMITATORS = 2; // share of an effect from which the values that imitate it are named, and how many of them
 const UNCHOSEN = ["cannot_see", "not needed", "small"];
 const VERDICTS = {
   missing: "missing", tie: "tied", small: "too small to matter", "not needed": "not needed", cannot_see: "could not be seen", proposed: "helps most; not in the catalogue",
@@ -52,10 +53,19 @@ function line(campaign, row, record, later) {
     h("td", { "data-head": "Matters from" }, parameters.map(([p]) => own(inUnit(p.delta, p, 2), p))),
     h("td", { class: "number", "data-head": "Chance that it matters" }, outside && !chosen ? "–" : chance(row.probability)),
     h("td", { class: "number", "data-head": "Would be seen" }, row.power === null ? "–" : `${Math.round(100 * row.power)} %`),
-    h("td", { class: "number", "data-head": "Hidden in the fit" }, row.hidden_in_fit === null ? "–" : `${(100 * row.hidden_in_fit).toFixed(row.hidden_in_fit < 0.01 ? 1 : 0)} %`),
+    h("td", { class: "number", "data-head": "Hidden in the fit" }, hidden(row, parameters)),
     h("td", { class: "number", "data-head": "Held out" }, fall),
     h("td", { "data-head": "Alike" }, row.rivals.length ? row.rivals.slice(0, 3).map((r) => h("div", {}, `${titleOf(campaign, r.effect)} `, h("span", { class: "faint" }, alike(r.cosine)))) : "–"),
     h("td", { "data-head": "Verdict" }, h("span", { class: "chip", "data-verdict": row.verdict }, became(row, parameters, campaign))));
+}
+
+/** How much of an effect calibrated values can imitate; where that is most of it, which of them, and in which direction. */
+function hidden(row, parameters) {
+  if (row.hidden_in_fit === null) return "–";
+  const share = `${(100 * row.hidden_in_fit).toFixed(row.hidden_in_fit < 0.01 ? 1 : 0)} %`;
+  const made = parameters[0]?.[1].made_up_by?.slice(0, IMITATORS) ?? []; // of its first size, as a cell has little room
+  if (row.hidden_in_fit < MOSTLY || !made.length) return share;
+  return [share, h("div", { class: "faint imitators" }, made.flatMap(({ name, change }, i) => [i ? ", " : "as ", change > 0 ? "more " : "less ", ...symbols(name.split(".").at(-1))]))];
 }
 
 const isChosen = (row, { diagnosis }) => diagnosis.effects.includes(row.effect) || row.verdict === "proposed";
@@ -96,11 +106,12 @@ function kept(group, campaign) {
 
 function columns(ranking) {
   const out = { effect: [], parameter: [], estimate: [], se: [], interval_low: [], interval_high: [], unit: [], smallest_interesting: [], probability: [], p: [], power: [],
-    hidden_in_fit: [], heldout_before: [], heldout_after: [], rivals: [], verdict: [] };
+    hidden_in_fit: [], made_up_by: [], heldout_before: [], heldout_after: [], rivals: [], verdict: [] };
   for (const row of ranking)
     for (const [parameter, v] of Object.entries(row.parameters)) {
       const [interval_low, interval_high] = v.interval ?? [];
-      const all = { ...row, ...v, interval_low, interval_high, parameter, rivals: row.rivals.map((r) => `${r.effect} ${r.cosine}`).join("; ") };
+      const all = { ...row, ...v, interval_low, interval_high, parameter, rivals: row.rivals.map((r) => `${r.effect} ${r.cosine}`).join("; "),
+        made_up_by: (v.made_up_by ?? []).map((m) => `${m.name} ${significant(m.change, 3)} ${m.unit}`).join("; ") };
       for (const name of Object.keys(out)) out[name].push(all[name]);
     }
   return out;

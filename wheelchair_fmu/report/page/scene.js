@@ -1,6 +1,5 @@
 // The chair from above on a canvas: the whole path, and close by the model's chair with the measured one as a ghost, its wheels
-// and casters turning, arrows of what
-// pushes it, and what each wheel carries.
+// and casters turning, arrows of what pushes it, and what each wheel carries.
 
 import { NARROW, h, sized, write } from "page/dom";
 import { broken, extent, long, round, svg, text, tick } from "page/draw";
