@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .channels import FORCE, MOMENTUM, POSITION
-from .clocks.smoothing import Smooth, smooth
+from .clocks.smoothing import smooth
+from .swinging import swing
 
 SIDES = ("l", "r")
 MARKERS = (  # of the body, as `markers` may name them
@@ -27,7 +28,7 @@ TRUNKS = frozenset({"shoulder_l", "shoulder_r", "c7", "sternum"})  # one of them
 TRUNK, HEAD, UPPER_ARM, FOREARM, HAND = 0.430, 0.068, 0.0263, 0.0150, 0.00585
 TRUNK_CM = {"shoulder": 0.405, "c7": 0.505, "sternum": 0.432}
 UPPER_ARM_CM, FOREARM_CM = 0.576, 0.457
-WIDTH = 0.02  # s, standard deviation of the Gaussian by which a position is smoothed: a body swings at 1 to 3 Hz
+WIDTH = 0.02  # s, standard deviation of the Gaussian by whose reach readings count as neighbours of a gap
 HIDDEN = 0.3  # s for which a marker may be hidden: a body moves on smoothly for so long
 STILL = 0.3  # s at the start by which positions are counted from where the body was
 MISSED = 0.1  # share of its momentum that a few markers miss of a body, besides their noise
@@ -144,24 +145,20 @@ def _hermite(time: np.ndarray, ends: np.ndarray, value: np.ndarray, slope: np.nd
 
 
 def of_position(time: np.ndarray, s: np.ndarray, mass: float) -> Body:
-    """What a mass (kg) at `s` (n,) does."""
-    smoothed = smooth(time, s, WIDTH)
-    momentum = mass * smoothed.at(time)[1]
-    noise = float(np.hypot(mass * _slope_noise(time, s, smoothed), MISSED * _rms(momentum)))
-    value = np.where(np.isfinite(momentum), smoothed.at(time)[0], np.nan)
-    return Body({POSITION: value, MOMENTUM: momentum, FORCE: rate(time, momentum)}, noise)
+    """What a mass (kg) at `s` (n,) does; nothing about a gap."""
+    found, seen = swing(time, s), np.isfinite(smooth(time, s, WIDTH).at(time)[0])
+    if found is None:
+        return Body(dict.fromkeys((POSITION, MOMENTUM, FORCE), np.full(len(time), np.nan)), 0.0)
+    value, momentum, force = (np.where(seen, v, np.nan) for v in (found.value, mass * found.slope, mass * found.bend))
+    return Body(
+        {POSITION: value, MOMENTUM: momentum, FORCE: force}, float(np.hypot(mass * found.noise, MISSED * _rms(momentum)))
+    )
 
 
 def rate(time: np.ndarray, momentum: np.ndarray) -> np.ndarray:
-    """How fast a momentum (n,) changes, as smooth as it is."""
-    return np.asarray(np.gradient(momentum, time)) if len(time) > 1 else np.zeros(len(time))
-
-
-def _slope_noise(time: np.ndarray, s: np.ndarray, smoothed: Smooth) -> float:
-    """Standard deviation of the smoothed slope, for white noise in `s`: a kernel of WIDTH leaves √(dt/(4 √π WIDTH³)) of it."""
-    off = s - smoothed.at(time)[0]
-    sd, step = _rms(off), float(np.median(np.diff(time)))
-    return float(sd * np.sqrt(step / (4 * np.sqrt(np.pi) * WIDTH**3)))
+    """How fast a momentum (n,) changes, smoothed as a position is."""
+    found = swing(time, momentum)
+    return np.zeros(len(time)) if found is None else np.where(np.isfinite(momentum), found.slope, np.nan)
 
 
 def _rms(values: np.ndarray) -> float:
