@@ -8,6 +8,7 @@ from scipy.signal import find_peaks
 
 from wheelchair_fmu.campaign.clocks import Signal, alike, offsets
 from wheelchair_fmu.campaign.clocks.lag import summits
+from wheelchair_fmu.campaign.clocks.network import _errors
 from wheelchair_fmu.campaign.clocks.scatter import long_run
 
 from .riding import coloured, ride, strokes
@@ -147,3 +148,21 @@ def test_gaps_are_not_read():
     values[600:700] = np.nan
     match = alike(Signal("a", "u", one.time, values), other)
     assert match.lag == pytest.approx(0.35, abs=4 * match.se)
+
+
+FIRST = [True, False, False, False]  # which of the devices the others are held against
+
+
+def test_what_all_offsets_have_in_common_is_the_references_error():
+    """Beside a clock that is unsure by 2 ms, three others that are unsure by 1, 0.5 and 0.2 ms each."""
+    own, shared = np.array([1e-3, 5e-4, 2e-4]), 2e-3
+    covariance = np.zeros((4, 4))
+    covariance[1:, 1:] = np.diag(own**2) + shared**2
+    se, parts = _errors(FIRST[:4], covariance)
+    np.testing.assert_allclose(se, [0.0, *np.hypot(own, shared)])
+    np.testing.assert_allclose(parts, [shared, *own])
+    two = np.array([[0.0, np.nan, 0.0], [np.nan, np.nan, np.nan], [0.0, np.nan, 4e-6]])  # the second was led to by nothing
+    se, parts = _errors(FIRST[:3], two)
+    np.testing.assert_allclose([se[2], parts[0], parts[2]], [shared, 0.0, shared])
+    apart = np.array([[0.0, 0.0, 0.0], [0.0, 1e-6, -5e-7], [0.0, -5e-7, 1e-6]])
+    assert _errors(FIRST[:3], apart)[1][0] == 0.0

@@ -397,10 +397,18 @@ def test_a_start_goes_where_readings_want_it_but_no_further_than_three_standard_
             assert (e.start["start.u"] - true.start["start.u"]) / sd == pytest.approx(expected, abs=0.2)
 
 
-def told_of_a_start(noise_of_it: np.ndarray, known: float, true: float) -> tuple[float, float]:
+KNOWN = START_SD["start.u"]
+
+
+def waves_of(n: int) -> np.ndarray:
+    """What a first speed of 1 m/s would do to readings."""
+    return 25 * signals(np.random.default_rng(5), 1, n, 1)[0][:, 0, 0]
+
+
+def told_of_a_start(noise_of_it: np.ndarray, true: float) -> tuple[float, float]:
     """What is told of a run's first speed, to be read in waves beside this noise (n,), which a model takes for white."""
-    n = len(noise_of_it)
-    waves = signals(np.random.default_rng(5), 1, n, 1)[0][:, 0, 0]
+    n, known = len(noise_of_it), KNOWN
+    waves = waves_of(n)
     size, axes = np.linalg.eigh(np.eye(n) + known**2 * np.outer(waves, waves))
     r, s = ((axes / np.sqrt(size)) @ (axes.T @ what) for what in (true * waves + noise_of_it, waves))
     (e,) = evidence([r[:, None]], [np.zeros((n, 1, 0))], ()).runs
@@ -408,27 +416,43 @@ def told_of_a_start(noise_of_it: np.ndarray, known: float, true: float) -> tuple
     names = list(e.uncertain)
     slopes = np.zeros((n, 1, len(names)))
     slopes[:, 0, names.index("start.u")] = s
-    return own_constant(replace(e, start_S=slopes), "start.u", known)
+    return own_constant(replace(e, start_S=slopes), "start.u")
 
 
 @pytest.mark.parametrize(("rho", "times", "level"), [(0.0, 1.0, 0.955), (0.9, 1.0, 0.95), (0.6, 4.0, 0.95)])
 def test_what_readings_tell_of_a_constant_of_one_run_is_as_sure_as_it_says(rho, times, level):
     """Beside noise that is white, that lasts, and that lasts and is four times as large as the model has it."""
-    rng, known, inside, n = np.random.default_rng(11), 0.5, [], 400
+    rng, inside, n = np.random.default_rng(11), [], 400
     for _ in range(400):
-        true = known * rng.normal()
-        told, se = told_of_a_start(times * noise(rng, (n,), rho), known, true)
-        assert se < known
+        true = KNOWN * rng.normal()
+        told, se = told_of_a_start(times * noise(rng, (n,), rho), true)
+        assert se < KNOWN
         inside.append(abs(told - true) < 2 * se)
     assert np.mean(inside) == pytest.approx(level, abs=0.025)
 
 
 def test_what_white_readings_leave_uncertain_of_a_constant():
     """n readings with noise σ = 1 and slopes s, and a prior p, leave 1/√(1/p² + s·s), but for the chance of the scatter."""
-    waves = signals(np.random.default_rng(5), 1, LONG, 1)[0][:, 0, 0]
-    known = 0.5
-    drawn = [told_of_a_start(white((LONG,), seed), known, 0.0)[1] for seed in range(40)]
-    assert np.mean(drawn) == pytest.approx((1 / known**2 + float(waves @ waves)) ** -0.5, rel=0.06)
+    waves = waves_of(LONG)
+    drawn = [told_of_a_start(white((LONG,), seed), 0.0)[1] for seed in range(40)]
+    assert np.mean(drawn) == pytest.approx((1 / KNOWN**2 + float(waves @ waves)) ** -0.5, rel=0.06)
+
+
+def test_a_difference_of_two_constants_is_surer_than_either_where_readings_tell_just_that():
+    """Two clocks, each unsure by p, and n readings of what they are apart: their difference is told, their sum is not."""
+    n, names = 200, ("start.u", "start.psi_dot")
+    sd, far, seen = np.array([START_SD[name] for name in names]), np.array([0.03, -0.04]), 25.0
+    slopes = seen * np.tile([1.0, -1.0], (n, 1))
+    size, axes = np.linalg.eigh(np.eye(n) + (slopes * sd) @ (slopes * sd).T)
+    r, s = ((axes / np.sqrt(size)) @ (axes.T @ what) for what in (slopes @ far + white((n,)), slopes))
+    (e,) = evidence([r[:, None]], [np.zeros((n, 1, 0))], ()).runs
+    e = replace(e, start=dict.fromkeys(START, 0.0))
+    full = np.zeros((n, 1, len(e.uncertain)))
+    full[:, 0, [list(e.uncertain).index(name) for name in names]] = s
+    apart, se = own_constant(replace(e, start_S=full), *names)
+    assert apart == pytest.approx(far[0] - far[1], abs=3 * se) and se == pytest.approx(1 / (seen * np.sqrt(n)), rel=0.2)
+    _, unsure = own_constant(replace(e, start_S=full), names[0])
+    assert unsure > 5 * se
 
 
 def test_no_runs_are_no_evidence():

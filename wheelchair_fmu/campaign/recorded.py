@@ -146,6 +146,7 @@ class Recorded(Readings):
                 _fmu_names(d.inputs),
                 d.part.clock.sd,
                 d.part.clock.offset,
+                d is self.drafts[0],
             )
             for d in self.drafts
             if d.part.clock.sd > 0

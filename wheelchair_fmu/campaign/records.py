@@ -16,13 +16,15 @@ from .series import began
 @dataclass(frozen=True)
 class Clock:
     """The clock of one device in one run: whose `channels` (by name) and `inputs` (by FMU name) it stamps, the standard
-    deviation, in s, of what may be left of its offset, and the offset that its times have been given."""
+    deviation, in s, of what may be left of its offset, and the offset that its times have been given. The others' are beside
+    that of the `reference`."""
 
     device: str
     channels: frozenset[str]
     inputs: frozenset[str]
     sd: float
     offset: float = 0.0
+    reference: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -98,7 +98,9 @@ RUN = TableRecord(
             "clocks",
             "table",
             "For each device what to add to its times so that all are alike; or a table with offset, sd (the standard "
-            "deviation of what may be left of it) and drift (s per s). In a run of one file, `pushes` is its record of pushes. "
+            "deviation of what may be left of it, by this device's own clock) and drift (s per s). The first device of "
+            "`files` has offset 0, and with an sd its own error counts once for all others. In a run of one file, `pushes` is "
+            "its record of pushes. "
             "`wheelchair sync` writes them.",
             unit="s",
             default="0",

@@ -28,6 +28,7 @@ class RunClocks:
     run: Recorded
     reference: str
     clocks: Mapping[str, Clock | Shift]
+    shared: float = 0.0  # s, standard error of the reference's own clock, in which all others' are the same
 
     def seconds(self, device: str) -> float:
         """What to add to a device's times; 0 for the one that the others are brought to, NaN where nobody knows."""
@@ -44,15 +45,17 @@ class RunClocks:
 
     @property
     def sure(self) -> dict[str, dict[str, float]]:
-        """What may be written, by device."""
-        found = {}
+        """What may be written, by device: offsets, and how unsure each device's own clock is."""
+        found: dict[str, dict[str, float]] = {}
         for device, clock in self.clocks.items():
             if not (clock.unique if isinstance(clock, Shift) else clock.sure):
                 continue
-            found[device] = {"offset": round(self.seconds(device), PLACES), "sd": round(clock.se, PLACES)}
+            se = clock.own if isinstance(clock, Clock) else clock.se
+            found[device] = {"offset": round(self.seconds(device), PLACES), "sd": round(se, PLACES)}
             if isinstance(clock, Clock) and abs(clock.drift) > DRIFTS * clock.drift_se:
                 found[device]["drift"] = float(f"{clock.drift:.3g}")
-        return found
+        shared = round(self.shared, PLACES)
+        return ({self.reference: {"offset": 0.0, "sd": shared}} if found and shared else {}) | found
 
 
 def signals(run: Recorded) -> Iterator[Signal]:
@@ -106,7 +109,9 @@ def find(runs: tuple[Recorded, ...], aside: Mapping[str, Sequence[Signal]] = {})
     for run in (r for r in runs if len(r.drafts) > 1):
         reference = run.drafts[0].part.device.name
         known = offsets([*signals(run), *aside.get(run.name, ())], reference=reference)
-        found.append(RunClocks(run, reference, {d: c for d, c in known.items() if d != reference}))
+        others = {d: c for d, c in known.items() if d != reference}
+        shared = known[reference].own if reference in known else 0.0
+        found.append(RunClocks(run, reference, others, shared))
     alone = {str(i): tuple(map(_beginning, signals(r))) for i, r in enumerate(runs) if len(r.drafts) == 1}
     for i, shift in odd_ones_out(alone).items():
         found.append(RunClocks(runs[int(i)], "readings", {PUSHES_CLOCK: shift}))

@@ -21,12 +21,14 @@ MATTERS = 0.02  # s, by which a pair may miss what the others say of it before n
 @dataclass(frozen=True, eq=False)
 class Clock:
     """`offset` is to be added to the device's file time to give the reference's (s), which runs faster by `drift` (s/s):
-    common = offset + (1 + drift) · file time. With standard errors. Where not `sure`, `why` says in a sentence what is missing
+    common = offset + (1 + drift) · file time. With standard errors. `own` is the part of the offset's that is this device's:
+    the rest is the reference's, and so the same in all others. Where not `sure`, `why` says in a sentence what is missing
     and what cures it, and the offset is the best guess (NaN where there is none), not to be used unseen. `evidence` are the
     pairs that this device is in."""
 
     offset: float
     se: float
+    own: float
     drift: float
     drift_se: float
     sure: bool
@@ -86,26 +88,39 @@ def _component(name: str, pairs: Sequence[Pair]) -> set[str]:
     return reached
 
 
-def _solve(names: Sequence[str], reference: str, pairs: Sequence[Pair]) -> dict[str, tuple[float, float, float, float]]:
-    """Offset, standard error, drift and standard error of each device that pairs lead to."""
-    offset, offset_se = _least_squares(names, reference, pairs, [p.lag for p in pairs], [p.se for p in pairs])
-    drift, drift_se = _least_squares(names, reference, pairs, [p.drift for p in pairs], [p.drift_se for p in pairs])
-    return {n: (float(offset[i]), float(offset_se[i]), float(drift[i]), float(drift_se[i])) for i, n in enumerate(names)}
+def _solve(names: Sequence[str], reference: str, pairs: Sequence[Pair]) -> dict[str, tuple[float, float, float, float, float]]:
+    """Offset, standard error, the device's own part of it, drift and standard error of each device that pairs lead to."""
+    offset, covariance = _least_squares(names, reference, pairs, [p.lag for p in pairs], [p.se for p in pairs])
+    drift, of_drift = _least_squares(names, reference, pairs, [p.drift for p in pairs], [p.drift_se for p in pairs])
+    columns = (offset, *_errors([n == reference for n in names], covariance), drift, np.sqrt(np.diag(of_drift)))
+    return {n: (float(a), float(b), float(c), float(d), float(e)) for n, a, b, c, d, e in zip(names, *columns, strict=True)}
+
+
+def _errors(reference: Sequence[bool], covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Standard errors (n,) of offsets, and each device's own part: what offsets have in common is the `reference`'s error (n,),
+    as they are all beside it. Where two devices are all there are, it is the other one's."""
+    variance = np.diag(covariance)
+    others = np.flatnonzero(np.isfinite(variance) & ~np.array(reference))
+    shared = 0.0
+    if len(others) > 1:
+        apart = covariance[np.ix_(others, others)][np.triu_indices(len(others), 1)]
+        shared = float(np.clip(np.mean(apart), 0.0, variance[others].min()))
+    return np.sqrt(variance), np.sqrt(np.where(reference, shared, variance - shared))
 
 
 def _least_squares(
     names: Sequence[str], reference: str, pairs: Sequence[Pair], lags: Sequence[float], ses: Sequence[float]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Weighted least squares of differences between nodes; the standard errors know that pairs which share a device share its
-    errors, and grow where the pairs disagree (Birge 1932). NaN where nothing leads."""
+    """Weighted least squares of differences between nodes, with their covariance (n, n); it knows that pairs which share a
+    device share its errors, and grows where the pairs disagree (Birge 1932). NaN where nothing leads."""
     reached = _component(reference, pairs)
     nodes = [n for n in names if n in reached and n != reference]
-    value, se = np.full(len(names), np.nan), np.full(len(names), np.nan)
+    value, errors = np.full(len(names), np.nan), np.full((len(names), len(names)), np.nan)
     at = [i for i, n in enumerate(names) if n == reference]
-    value[at], se[at] = 0.0, 0.0
+    value[at], errors[np.ix_(at, at)] = 0.0, 0.0
     ours = [i for i, p in enumerate(pairs) if p.a in reached]
     if not nodes:
-        return value, se
+        return value, errors
     incidence = np.array([[(n == pairs[i].b) - (n == pairs[i].a) for n in nodes] for i in ours], float)
     ends = np.array([[(n == pairs[i].b) - (n == pairs[i].a) for n in names] for i in ours], float)
     sd, lag = np.array([ses[i] for i in ours]), np.array([lags[i] for i in ours])
@@ -117,8 +132,8 @@ def _least_squares(
     spare = len(ours) - len(nodes)
     birge = max(1.0, float(np.sum(((lag - incidence @ found) / sd) ** 2)) / spare) if spare else 1.0
     places = [list(names).index(n) for n in nodes]
-    value[places], se[places] = found, np.sqrt(birge * np.maximum(np.diag(covariance), 0))
-    return value, se
+    value[places], errors[np.ix_(places, places)] = found, birge * covariance
+    return value, errors
 
 
 def _misfits(solved: Mapping[str, tuple[float, ...]], pairs: Sequence[Pair]) -> list[Pair]:

@@ -101,7 +101,7 @@ def _start(e: RunEvidence, likelihood: Likelihood) -> dict[str, dict[str, Any]]:
     """By parameter, where a run began: its `value` given all readings, its `se` and its `unit`."""
     expected, began = likelihood.expected_start(e.run), {}
     for name in e.started:
-        off, se = own_constant(e, name, e.uncertain[name])
+        off, se = own_constant(e, name)
         began[name] = {"value": expected[name] + off, "se": se, "unit": likelihood.records[name].unit.name}
     return began
 

@@ -166,15 +166,18 @@ def unlike_the_others(*evidence: Evidence) -> tuple[str, ...]:
 
 
 def clocks(*evidence: Evidence) -> dict[str, dict[str, Late]]:
-    """For each run whose devices' clocks are uncertain, and each of these, its offset as the readings have it."""
-    runs = (e for some in evidence for e in some.runs)
-    found = {e.run.name: {c.device: _estimated(e, c) for c in e.run.clocks if c.sd > 0} for e in runs}
+    """For each run whose devices' clocks are uncertain, and each of these, its offset as the readings have it, beside the
+    clock of the run's reference."""
+    found = {e.run.name: dict(_estimated(e)) for some in evidence for e in some.runs}
     return {run: of for run, of in found.items() if of}
 
 
-def _estimated(e: RunEvidence, clock: Clock) -> Late:
-    late, se = own_constant(e, f"clock.{clock.device}", clock.sd)
-    return Late(clock.offset + late, se)
+def _estimated(e: RunEvidence) -> Iterator[tuple[str, Late]]:
+    unsure = [c for c in e.run.clocks if c.sd > 0]
+    beside = [f"clock.{c.device}" for c in unsure if c.reference]
+    for clock in (c for c in unsure if not c.reference):
+        late, se = own_constant(e, f"clock.{clock.device}", *beside)
+        yield clock.device, Late(clock.offset + late, se)
 
 
 def _pushes(run: Run) -> dict[str, np.ndarray]:
