@@ -66,3 +66,7 @@ def test_gaps_are_bridged_and_too_few_readings_are_none():
     found, whole = swing(time, path), swing(*seen(100.0, 5e-4))
     assert np.isfinite(found.slope).all() and np.abs(found.slope - whole.slope)[650:760].max() < 0.03
     assert swing(time[:7], path[:7]) is None
+    few = swing(0.001 * np.arange(10), path[:10])
+    assert few is not None and np.isfinite(few.slope).all() and half_left(0.001 * np.arange(10), path[:10]) == FASTEST
+    still = swing(time, 0 * time)
+    assert not np.abs(still.slope).any() and still.noise == 0

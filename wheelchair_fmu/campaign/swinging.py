@@ -47,7 +47,10 @@ def swing(time: np.ndarray, path: np.ndarray) -> Swing | None:
 
 def half_left(time: np.ndarray, path: np.ndarray) -> float:
     """The frequency (Hz) of which a spline that foretells these readings best leaves half."""
-    t, y = _liveliest(*_means(time, path))
+    t, y = _means(time, path)
+    if len(t) < 2 * FEWEST:
+        return FASTEST
+    t, y = _liveliest(t, y)
     step = 2 * float(np.median(np.diff(t)))
 
     def missed(log_frequency: float) -> float:
@@ -56,8 +59,6 @@ def half_left(time: np.ndarray, path: np.ndarray) -> float:
             squares += float(np.sum((y[left] - _spline(t[kept], y[kept], step, limit)(t[left])) ** 2))
         return squares
 
-    if len(t) < 2 * FEWEST or not np.ptp(y):
-        return FASTEST
     bounds = np.log([SLOWEST, FASTEST])
     return float(np.exp(minimize_scalar(missed, bounds=bounds, method="bounded", options={"xatol": FOUND}).x))
 
