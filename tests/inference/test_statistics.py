@@ -14,6 +14,7 @@ import pytest
 from scipy import stats
 
 from tests.inference.linear import STEP, evidence, least_squares, noise, signals, values
+from wheelchair_fmu.campaign import Clock
 from wheelchair_fmu.inference.chance import student
 from wheelchair_fmu.inference.decision.bootstrap import _estimates
 from wheelchair_fmu.inference.estimation.interval import NORMAL, half_width
@@ -37,11 +38,13 @@ from wheelchair_fmu.inference.models.factory import ModelFactory
 from wheelchair_fmu.inference.models.hypothesis import Model
 from wheelchair_fmu.inference.models.models import Models
 from wheelchair_fmu.inference.policy import SearchPolicy
+from wheelchair_fmu.inference.preflight.timing import clocks as told_clocks
 from wheelchair_fmu.inference.search.judge import judge
 from wheelchair_fmu.model.variant import Variant
 
 NAMES = ("a", "b", "c")
 LONG = 800  # samples of a run
+NONE: frozenset[str] = frozenset()
 EFFECTS = {  # of the catalogue, by what kind of test they ask for
     "one-sided": ("scrub_torque", ("effect.scrub_torque.M",)),
     "two-sided": ("gyro_bias", ("effect.gyro_bias.b",)),
@@ -453,6 +456,30 @@ def test_a_difference_of_two_constants_is_surer_than_either_where_readings_tell_
     assert apart == pytest.approx(far[0] - far[1], abs=3 * se) and se == pytest.approx(1 / (seen * np.sqrt(n)), rel=0.2)
     _, unsure = own_constant(replace(e, start_S=full), names[0])
     assert unsure > 5 * se
+
+
+def test_clocks_are_told_beside_the_one_that_they_are_held_against():
+    """Of three devices the first may be 2 ms off, the second no more than that, the third 1 ms besides. Readings tell that the
+    first is 1 ms late: so the second, whose own error is none, is early by that beside it."""
+    n, late = 400, 1e-3
+    clocks = (
+        Clock("frame", NONE, NONE, 2e-3, 0.0, True),
+        Clock("left", NONE, NONE, 0.0, 0.3),
+        Clock("right", NONE, NONE, 1e-3, 0.5),
+    )
+    (e,) = evidence([np.zeros((n, 1))], [np.zeros((n, 1, 0))], ()).runs
+    e = replace(e, run=replace(e.run, clocks=clocks), start=dict.fromkeys(START, 0.0))
+    names, seen = list(e.uncertain), 1e3 * np.cos(np.arange(n) / 7)
+    assert "clock.left" not in names and {"clock.frame", "clock.right"} < set(names)
+    size, axes = np.linalg.eigh(np.eye(n) + 2e-3**2 * np.outer(seen, seen))
+    r, s = ((axes / np.sqrt(size)) @ (axes.T @ what) for what in (late * seen + white((n,), 3), seen))
+    slopes = np.zeros((n, 1, len(names)))
+    slopes[:, 0, names.index("clock.frame")] = s
+    found = told_clocks(Evidence((replace(e, r=r[:, None], start_S=slopes),), ()))["run 0"]
+    assert list(found) == ["left", "right"]
+    assert found["left"].seconds == pytest.approx(0.3 - late, abs=3 * found["left"].sd) and found["left"].sd < 1e-4
+    assert found["right"].seconds - 0.5 == pytest.approx(found["left"].seconds - 0.3)
+    assert found["right"].sd == pytest.approx(np.hypot(1e-3, found["left"].sd), rel=0.05)
 
 
 def test_no_runs_are_no_evidence():

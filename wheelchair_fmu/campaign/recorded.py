@@ -135,7 +135,7 @@ class Recorded(Readings):
 
     @property
     def clocks(self) -> tuple[Clock, ...]:
-        """What is left uncertain of the devices' clocks."""
+        """What is left uncertain of the devices' clocks: of one that knows its own error, that of the first may be all."""
         if len(self.drafts) == 1:
             own = clock(self.entry, PUSHES_CLOCK)
             return (Clock(PUSHES_CLOCK, frozenset(), _fmu_names(self.drafts[0].pushed), own.sd, own.offset),) if own.sd else ()
@@ -149,7 +149,7 @@ class Recorded(Readings):
                 d is self.drafts[0],
             )
             for d in self.drafts
-            if d.part.clock.sd > 0
+            if d.part.clock.sd > 0 or self.drafts[0].part.clock.sd > 0
         )
 
     @property

@@ -173,9 +173,8 @@ def clocks(*evidence: Evidence) -> dict[str, dict[str, Late]]:
 
 
 def _estimated(e: RunEvidence) -> Iterator[tuple[str, Late]]:
-    unsure = [c for c in e.run.clocks if c.sd > 0]
-    beside = [f"clock.{c.device}" for c in unsure if c.reference]
-    for clock in (c for c in unsure if not c.reference):
+    beside = [f"clock.{c.device}" for c in e.run.clocks if c.reference]
+    for clock in (c for c in e.run.clocks if not c.reference):
         late, se = own_constant(e, f"clock.{clock.device}", *beside)
         yield clock.device, Late(clock.offset + late, se)
 

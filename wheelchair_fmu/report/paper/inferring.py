@@ -103,7 +103,7 @@ def _nuisances(case: Case) -> Iterator[str]:
 
 
 def _clocks(case: Case) -> Iterator[str]:
-    sds = [clock.sd for run in case.campaign.runs for clock in run.clocks]
+    sds = [clock.sd for run in case.campaign.runs for clock in run.clocks if clock.sd > 0]
     if sds:
         low, high = (f"{1000 * sd:.2g}" for sd in (min(sds), max(sds)))
         between = f"{low} ms" if low == high else f"between {low} and {high} ms"
