@@ -356,6 +356,7 @@ class App {
     this.motion = { time: run.time, model: moved(at), measured: reckoned(run, at), before: before && before !== result ? moved(before.results) : null, results: at, inputs: run.inputs, friction: this.values["tyre.mu"] ?? run.set["tyre.mu"] ?? geometry.mu,
       rolled: rolled(run.time, at, geometry.t_r), lacking: lacking(run, result, { mass: this.values["chair.m"] ?? geometry.m, inertia: this.values["chair.I_z"] ?? geometry.I_z }) };
     this.scene.show(this.motion, this.look ??= look(), run.name);
+    write(byId("laws"), `Laws of this model: ${lawsOf(this.campaign.models[result.model].laws)}.`);
     const pinned = this.pins.kept.map((k) => [k.label, k.results?.[this.shown.run]]).filter(([, r]) => r?.predicted);
     this.timeline.show(this.shown.channel, result, before, pinned, this.band(result));
     mini(this.mini, this.room(), this.look, run.channels[this.shown.channel], result.predicted[this.shown.channel]);
@@ -365,7 +366,6 @@ class App {
   drawAll(rested) {
     write(byId("now-fit"), rms(this.now.fit));
     write(byId("now-heldout"), rms(this.now.heldout));
-    this.lawful();
     this.figures.follow();
     this.story.draw(rested);
     if (!rested) return;
@@ -373,13 +373,6 @@ class App {
     this.pins.show({ values: this.values, errors: this.now });
     const spoken = `Error on runs held out ${rms(this.now.heldout)}, on fitted runs ${rms(this.now.fit)}; 1.00 is noise alone.`;
     write(byId("said"), spoken);
-  }
-
-  /** The laws of the model that runs, which is the lightest that has what is put in. */
-  lawful() {
-    const { effects, models } = this.campaign, on = effects.filter((e) => e.parameters.some((p) => this.values[p.name])).map((e) => e.id);
-    const model = models.find((m) => on.every((effect) => m.effects.includes(effect))) ?? models[0];
-    write(byId("laws"), `Laws of this model: ${lawsOf(model.laws)}.`);
   }
 
   /** Settings that are kept: what of them is not known is simulated beside. */

@@ -215,8 +215,8 @@ function again(kernel, of, values, place, kept = false) {
   return { to, set };
 }
 
-/** What the page shows: errors by channel, their squares and those in SI units (`gaps`), readings, and standard deviations of
- *  what is measured about them where values are right; in `brief` without series. */
+/** What the page shows: errors by channel, their squares and those in SI units (`gaps`), which `model` of the page's ran, its
+ *  readings, and standard deviations of what is measured about them where values are right; in `brief` without series. */
 function told(kernel, of, place, simulated, set, brief) {
   const { wasm } = kernel, { n, nz, names } = of, [shown, sd, errors] = ["shown", "sd", "errors"].map((name) => kernel.block(name, n * nz)), sums = kernel.block("sums", 3 * nz);
   wasm.wc_page_tell(of.record, set, place.record, simulated, shown, sd, errors, sums);
@@ -228,7 +228,7 @@ function told(kernel, of, place, simulated, set, brief) {
   if (brief) return { ...summed, brief };
   const results = kernel.split(kernel.pointer(simulated, WHERE.results), n, kernel.outputs.length);
   return {
-    ...summed, errors: by(kernel.split(errors, n, nz)), predicted: by(kernel.split(shown, n, nz)), sd: by(kernel.split(sd, n, nz)),
+    ...summed, model: kernels.indexOf(kernel), errors: by(kernel.split(errors, n, nz)), predicted: by(kernel.split(shown, n, nz)), sd: by(kernel.split(sd, n, nz)),
     results: Object.fromEntries(campaign.shown.map((name) => [name, results(kernel.outputs.indexOf(name))])),
   };
 }
