@@ -239,7 +239,8 @@ class Diagnosis:
     def add(self, *effects: str) -> Variant:
         """Fit the chair again with one more effect, or several, and return it; its `staircase` shows what that does.
 
-        Raises UsageError for an unknown id, and Failure where such a chair cannot be simulated on these runs.
+        Raises UsageError for an unknown id, and Failure where such a chair cannot be simulated on these runs, or fits them
+        worse than without.
 
         >>> better = found.add("rolling_resistance_asymmetry")
         >>> round(better.values["effect.rolling_resistance_asymmetry.D"], 1), bool(better.staircase["heldout"].iloc[-1] < 1.05)

@@ -135,7 +135,7 @@ class Recorded(Readings):
 
     @property
     def clocks(self) -> tuple[Clock, ...]:
-        """What is left uncertain of the devices' clocks: of one that knows its own error, that of the first may be all."""
+        """What is left uncertain of the devices' clocks; where the first one's is, those too that add no error of their own."""
         if len(self.drafts) == 1:
             own = clock(self.entry, PUSHES_CLOCK)
             return (Clock(PUSHES_CLOCK, frozenset(), _fmu_names(self.drafts[0].pushed), own.sd, own.offset),) if own.sd else ()

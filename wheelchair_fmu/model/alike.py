@@ -21,7 +21,7 @@ YAW_RESISTANCE = Alike(
 TURNED_PATCHES = Alike(
     "a torque against the turn: turn_slip is the dry one on the spot and, at one speed, the viscous one on wide arcs, "
     "pivot_torque is there only about a wheel that stands; where a chair only rolls, casters that drag more and rear wheels "
-    "that drag less do the same",
+    "that drag less do nearly the same",
     told_by="a spin on the spot and a turn about one wheel, beside turns of several radii at several speeds",
     with_parameters=("resistance.f_r", "resistance.f_f"),
     one_cause=True,

@@ -129,6 +129,7 @@ def _least_squares(
     overlap = SHARED * ends @ ends.T
     np.fill_diagonal(overlap, 1.0)
     covariance = solver @ (overlap * np.outer(sd, sd)) @ solver.T
+    np.fill_diagonal(covariance, np.maximum(np.diag(covariance), 0))  # which rounding may leave below nothing
     spare = len(ours) - len(nodes)
     birge = max(1.0, float(np.sum(((lag - incidence @ found) / sd) ** 2)) / spare) if spare else 1.0
     places = [list(names).index(n) for n in nodes]

@@ -100,9 +100,9 @@ class Larger(NamedTuple):
 
 def instead_of_small(first: Round) -> tuple[Larger, ...]:
     """Effects that would be large, and that data cannot tell from those that are slight."""
-    likeliest, small = [c.support for c in first.slight], slight(first)
+    surely, small = [c.support for c in first.slight], slight(first)
     others = (c for c in first.candidates if c.matters and not c.worsens and c.effect not in small)
-    behind = ((c, first.nothing([c.support, *likeliest]) - first.log_prior - c.support.large) for c in others)
+    behind = ((c, first.nothing([c.support, *surely]) - first.log_prior - c.support.large) for c in others)
     return tuple(
         Larger(c.effect, float(np.linalg.norm(c.size / c.delta)), float(np.exp(log_odds)))
         for c, log_odds in behind

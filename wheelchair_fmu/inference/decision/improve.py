@@ -42,7 +42,7 @@ def add(
     """Refit the chair with these effects, one after the other; its own are estimated anew, and the noise with each, as a search
     does.
 
-    Raises Failure where the chair with an effect cannot be simulated on this campaign.
+    Raises Failure where the chair with an effect cannot be simulated on this campaign, or fits it worse than without.
     """
     begun = begin(Models.of(ModelFactory(windows(campaign), chair, frozenset(fixed)), say=say))
     now = selection(begun, lambda ladder: None)
@@ -61,8 +61,8 @@ def _with(models: Models, base: Model, effect: str) -> tuple[Models, Model]:
     found = candidate(models, base, screened[0], 1) if screened else None
     if found is None:
         raise Failure(
-            f"no fit of the chair with {effect} was found that leaves less than the chair without it, or it cannot be "
-            "simulated on these runs; check its bounds and its law"
+            f"the chair with {effect} cannot be simulated on these runs, or fits them worse than the chair without it; "
+            "check its bounds and its law"
         )
     return models.settled((*base.effects, effect), found.fit)
 

@@ -55,7 +55,8 @@ def as_json(d: Diagnosis) -> dict[str, Any]:
 def ranking(d: Diagnosis) -> list[dict[str, Any]]:
     """Every effect, the refitted first, as the round in which it did best saw it."""
     first = d.rounds[0]
-    scores = {s.effect: s for r in d.rounds for s in r.scores} | {s.effect: s for s in first.scores}
+    scored = {s.effect: (s, r.fit) for r in (*d.rounds, first) for s in r.scores}
+    scores = {effect: s for effect, (s, _) in scored.items()}
     candidates: dict[str, tuple[Candidate, Round]] = {}
     for r in (*d.rounds, *d.beside):
         for c in r.candidates:
@@ -72,8 +73,7 @@ def ranking(d: Diagnosis) -> list[dict[str, Any]]:
     rivals = _rivals(first.scores)
     nobody: tuple[Candidate | None, Round] = (None, first)
     seen = {e: candidates.get(e, nobody) for e in order}
-    measured_in = {s.effect: r for r in (*d.rounds, first) for s in r.scores}
-    return [_row(d, scores[e], seen[e][0], seen[e][1], rivals.get(e, []), measured_in[e].fit) for e in order]
+    return [_row(d, *scored[e], *seen[e], rivals.get(e, [])) for e in order]
 
 
 def groups(d: Diagnosis) -> list[dict[str, Any]]:
@@ -94,21 +94,20 @@ def groups(d: Diagnosis) -> list[dict[str, Any]]:
     ]
 
 
-def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dict[str, Any]], beside: Fit) -> dict[str, Any]:
+def _row(d: Diagnosis, s: Score, beside: Fit, c: Candidate | None, r: Round, rivals: list[dict[str, Any]]) -> dict[str, Any]:
     """An effect's row; its score was taken `beside` a fit."""
     records = d.models.factory.records
     estimate, se = _estimate(d, s, c)
-    made_up = [_made_up(d, beside, change) for change in s.imitated.T]
     parameters = {
         name.rpartition(".")[2]: {
             "estimate": float(v),
             "se": finite(e),
             "unit": records[name].unit.name,
             "smallest_interesting": records[name].smallest_interesting,
-            "made_up_by": made_up[i],
+            "made_up_by": _made_up(d, beside, change),
             **({"interval": list(d.intervals[name])} if name in d.intervals else {}),
         }
-        for i, (name, v, e) in enumerate(zip(s.names, estimate, se, strict=True))
+        for name, v, e, change in zip(s.names, estimate, se, s.imitated.T, strict=True)
     }
     before = r.heldout.rms if r.heldout.runs else float("nan")
     return {
