@@ -11,6 +11,7 @@ from benchmarks.independent.campaigns import make, truth
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.estimation.calibration import at_bound, calibration, doubts
+from wheelchair_fmu.inference.estimation.fit import Problem
 from wheelchair_fmu.inference.explain.story import story
 from wheelchair_fmu.inference.models.factory import MEASURED, ModelFactory
 from wheelchair_fmu.inference.models.models import Models
@@ -33,18 +34,36 @@ def test_values_as_given_raise_no_doubts(sample):
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "sd", "stopped"),
+    ("value", "sd", "reach", "stopped"),
     [
-        ("chair.a", 0.29, 0.01, True),  # four standard deviations of its prior
-        ("chair.a", 0.289, 0.01, False),
-        ("chair.a", 1.0, inf, True),  # its own bound
-        ("effect.some.a", 0.9, 0.01, False),  # whose prior is no reason to stop
-        ("effect.some.a", 0.0, inf, True),
+        (0.29, 0.01, (0.21, 0.29), True),  # as far as a prior lets it go
+        (0.289, 0.01, (0.21, 0.29), False),
+        (1.0, inf, (0.0, 1.0), True),  # its own bound
+        (0.9, 0.01, (0.0, 1.0), False),  # of an effect, whose prior is no reason to stop
+        (0.25, 0.01, (0.25, 1.0), False),  # as it was given
     ],
 )
-def test_a_fit_stops_at_bounds_and_where_no_prior_lets_it_go(name, value, sd, stopped):
-    record = Parameter(name, M, default=0.25, lower=0.0, upper=1.0)
-    assert at_bound(record, value, 0.25, sd) is stopped
+def test_a_fit_stops_at_the_ends_of_what_it_may_reach(value, sd, reach, stopped):
+    assert at_bound(Parameter("chair.a", M, default=0.25), value, 0.25, sd, reach) is stopped
+
+
+def given(chair, **more):
+    """A campaign that says how large effects are, with the likelihood of a chair that has them."""
+    campaign, effects = replace(chair, **more), ("caster_trail", "floor_slope")
+    return ModelFactory(campaign, Variant().with_effects(effects)).likelihood(effects)
+
+
+def test_a_size_that_was_measured_is_known_as_a_lab_measures_it(sample):
+    """A caster's trail to 5 mm, by its record; what has no record of that, or was not measured, is free."""
+    trail, slope = "effect.caster_trail.c", "effect.floor_slope.x"
+    free = Problem(given(sample), [trail, slope])
+    assert [*free.prior.sd] == [inf, inf] and free.upper[0] == 0.3
+    known = {**sample.known, trail: 0.05, slope: 0.002}
+    found = Problem(given(sample, known=known), [trail, slope])
+    assert [*found.prior.sd] == [0.005, inf] and [*found.prior.mean] == [0.05, 0.002]
+    assert (found.lower[0], found.upper[0]) == pytest.approx((0.03, 0.07))
+    said = Problem(given(sample, known=known, priors={trail: 0.001, slope: 0.0005}), [trail, slope])
+    assert [*said.prior.sd] == [0.001, 0.0005] and said.upper[1] == pytest.approx(0.004)
 
 
 def test_a_mass_that_nobody_weighed_is_said(sample):

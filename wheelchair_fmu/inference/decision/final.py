@@ -39,7 +39,12 @@ def final(d: Diagnosis, more: Mapping[str, Parameter]) -> dict[str, Any]:
         "laws": {"tyre": choice.tyre, "caster": choice.caster, "wheel": choice.wheel, "equations": choice.equations},
         "parameters": [
             _parameter(
-                records[name], found.values[name], (float(se), allowed[i]), *priors[name], _interval(d, found, records[name], i)
+                records[name],
+                found.values[name],
+                (float(se), allowed[i]),
+                *priors[name],
+                _reach(found, records[name], i),
+                _interval(d, found, records[name], i),
             )
             for i, (name, se) in enumerate(zip(found.names, errors, strict=True))
         ],
@@ -60,6 +65,13 @@ def _priors(d: Diagnosis, found: Fit, records: Mapping[str, Parameter]) -> dict[
     }
 
 
+def _reach(found: Fit, record: Parameter, at: int) -> tuple[float, float]:
+    """How far the fit might go."""
+    if found.lower is None or found.upper is None:
+        return record.lower, record.upper
+    return float(found.lower[at]), float(found.upper[at])
+
+
 def _interval(d: Diagnosis, found: Fit, record: Parameter, at: int) -> tuple[tuple[float, float], str]:
     """That of an effect that was found, or one by standard errors alone; and which of the two it is."""
     name = found.names[at]
@@ -74,12 +86,13 @@ def _parameter(
     errors: tuple[float, float],
     prior: float,
     prior_sd: float,
+    reach: tuple[float, float],
     interval: tuple[tuple[float, float], str],
 ) -> dict[str, Any]:
     """`errors` are the standard error and what effects that nobody named add to it. Standard errors say nothing of a value that
     a bound stopped, which has no `interval` by these."""
     ends, by = interval
-    stopped = at_bound(record, value, prior, prior_sd)
+    stopped = at_bound(record, value, prior, prior_sd, reach)
     told = by == BY_PROFILE or (not stopped and bool(np.isfinite(ends).all()))
     return {
         "name": record.name,

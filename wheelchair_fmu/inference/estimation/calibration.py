@@ -86,13 +86,14 @@ def calibration(likelihood: Likelihood, found: Fit) -> list[Calibrated]:
     """Every calibrated value of a fit, in the fit's order, with constants of effects that it has adjusted; sizes of effects and
     offsets of sensors are not among them, nor generic terms, which no likelihood of the search knows."""
     told = [n for n in found.names if n in likelihood.records and not n.startswith("offset.")]
-    names = [n for n in told if not sizes_an_effect(likelihood.records[n])]
+    names = [n for n in told if not sizes_an_effect(likelihood, n)]
     problem, errors = Problem(likelihood, names), standard_errors(found)
     out = []
     for i, name in enumerate(names):
         value, sd = found.values[name], float(problem.prior.sd[i])
         record, mean = likelihood.records[name], float(problem.prior.mean[i])
-        stopped, reach = at_bound(record, value, mean, sd), (float(problem.lower[i]), float(problem.upper[i]))
+        reach = (float(problem.lower[i]), float(problem.upper[i]))
+        stopped = at_bound(record, value, mean, sd, reach)
         given = name in likelihood.campaign.known or name in likelihood.variant.values or name in likelihood.campaign.priors
         out.append(Calibrated(record, value, errors[name], mean, sd, stopped, *reach, given))
     return out
@@ -106,12 +107,11 @@ def _to_the_same_place(value: float, prior: float, sd: float) -> tuple[str, str,
     return f"{round(value, place):.9g}", f"{round(prior, place):.9g}", f"{float(f'{sd:.2g}'):.9g}"
 
 
-def at_bound(record: Parameter, value: float, prior: float, prior_sd: float) -> bool:
-    """Does a fitted value lie where a fit may go no further: at a bound of its record's, or as far off as its prior lets it?
-    One that is as it was given has not been stopped there."""
-    reach = np.inf if sizes_an_effect(record) else REACH * prior_sd
+def at_bound(record: Parameter, value: float, prior: float, prior_sd: float, reach: tuple[float, float]) -> bool:
+    """Does a fitted value lie at an end of what a fit may `reach`: at a bound of its record's, or as far off as its prior lets
+    it? One that is as it was given has not been stopped there."""
     near = CLOSE * (prior_sd if np.isfinite(prior_sd) else record.smallest_interesting or record.nominal or 1.0)
-    inside = max(record.lower, prior - reach) + near < value < min(record.upper, prior + reach) - near
+    inside = reach[0] + near < value < reach[1] - near
     return not inside and abs(value - prior) > near
 
 

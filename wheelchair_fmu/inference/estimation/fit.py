@@ -17,7 +17,6 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ...errors import SimulationError
-from ...quantities import Parameter
 from ..evidence.evidence import Evidence
 from ..evidence.likelihood import Likelihood
 from .inverse import inverse
@@ -71,15 +70,15 @@ class Prior:
 
 def prior_of(likelihood: Likelihood, names: Sequence[str]) -> Prior:
     """Calibrated values have the campaign's word, or as much as chairs differ by where nobody gave one's; constants of effects
-    have their records'. Sizes of effects have none, but that of several parameters which the data cannot tell apart each is
-    taken to be no larger than it must be."""
+    have their records', and so have sizes that were measured. Other sizes of effects have none, but that of several parameters
+    which the data cannot tell apart each is taken to be no larger than it must be."""
     mean = np.array([*start_values(likelihood, names).values()])
     groups = Counter(n.rpartition(".")[0] for n in names if likelihood.records[n].estimated)
 
     def sd(name: str, mean: float) -> float:
         if name in likelihood.campaign.priors:
             return likelihood.campaign.priors[name]
-        if sizes_an_effect(likelihood.records[name]):
+        if sizes_an_effect(likelihood, name):
             return GROUPED * likelihood.records[name].delta if groups[name.rpartition(".")[0]] > 1 else np.inf
         if name in likelihood.offsets:
             return likelihood.campaign.nuisance_sd.get(likelihood.offsets[name], np.inf)
@@ -90,9 +89,12 @@ def prior_of(likelihood: Likelihood, names: Sequence[str]) -> Prior:
     return Prior(mean, np.array([sd(n, m) for n, m in zip(names, mean, strict=True)]))
 
 
-def sizes_an_effect(record: Parameter) -> bool:
-    """Does a parameter say how large an effect is, so that nothing is known of it beforehand?"""
-    return record.estimated and record.name.startswith("effect.")
+def sizes_an_effect(likelihood: Likelihood, name: str) -> bool:
+    """Does a parameter say how large an effect is, so that nothing is known of it beforehand? Of one that the campaign gives
+    something is known where its record says how well labs measure such a size, or the campaign itself."""
+    record, campaign = likelihood.records[name], likelihood.campaign
+    measured = name in campaign.priors or (name in campaign.known and record.known_to is not None)
+    return record.estimated and name.startswith("effect.") and not measured
 
 
 def start_values(likelihood: Likelihood, names: Sequence[str]) -> dict[str, float]:
@@ -107,7 +109,7 @@ class Problem:
     def __init__(self, likelihood: Likelihood, names: Sequence[str]):
         records = likelihood.records
         self.likelihood, self.names, self.prior = likelihood, tuple(names), prior_of(likelihood, names)
-        reach = np.where([sizes_an_effect(records[n]) for n in names], np.inf, REACH * self.prior.sd)
+        reach = np.where([sizes_an_effect(likelihood, n) for n in names], np.inf, REACH * self.prior.sd)
         self.lower = np.maximum([records[n].lower for n in names], self.prior.mean - reach)
         self.upper = np.minimum([records[n].upper for n in names], self.prior.mean + reach)
         self.scale = np.array([records[n].smallest_interesting or records[n].nominal for n in names])

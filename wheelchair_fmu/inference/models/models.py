@@ -170,8 +170,8 @@ class Models:
 
     def unknown(self, likelihood: Likelihood, found: Fit) -> np.ndarray:
         """Inverse variances (k,) of what a fit took for unknown beforehand: how large effects of interest are."""
-        records = [likelihood.records[n] for n in found.names]
-        sizes = [self.policy.large * r.delta if sizes_an_effect(r) else np.inf for r in records]
+        records, large = likelihood.records, self.policy.large
+        sizes = [large * records[n].delta if sizes_an_effect(likelihood, n) else np.inf for n in found.names]
         return np.array(sizes) ** -2.0
 
     def weight(self, found: Fit, effect: str) -> float:

@@ -14,6 +14,7 @@ TRAIL = Parameter(
     lower=0.0,
     upper=0.3,
     symbol="more_trail",
+    known_to=0.005,
     source="Doria, (8)",
 )
 

@@ -15,6 +15,7 @@ MASS = Parameter(
     lower=0.0,
     upper=50.0,
     symbol="m_w",
+    known_to=0.2,
     source="published wheelchair models: 0.14 kg m²",
 )
 
