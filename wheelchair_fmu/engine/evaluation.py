@@ -66,7 +66,7 @@ class _Evaluation(ctypes.Structure):
         ("f", FilterRecord),
         *_pointers("gain", "scale", "offset", "by_start", "slopes", "constant", "less", "as_push"),
         *_pointers("x", "y", "driven", "p", "w", "column", "busy", "innovations", "added_again"),
-        *_pointers("before", "step", "noise", "none", "reached", "pushed"),
+        *_pointers("before", "step", "noise", "none", "errors", "trial", "reached", "pushed", "silent"),
     )
 
 
@@ -193,9 +193,10 @@ class Evaluator:
         rounds: int,
         pushed: np.ndarray | None = None,
         follows: bool = False,
+        silent: np.ndarray | None = None,
     ) -> Evaluation:
-        """The run from `start` (m + l,) along `path` (n, d), with pushes larger than their record by `pushed` (n, nq), and with
-        derivatives `by` these parameters besides the start's.
+        """The run from `start` (m + l,) along `path` (n, d), with pushes larger than their record by `pushed` (n, nq), without
+        the readings that are `silent` (n, nz), and with derivatives `by` these parameters besides the start's.
 
         Its start is moved `rounds` times at most to where its readings want it; a run that is led goes where forces lead it, if
         that is not 0. One that `follows` is linearised about the likeliest errors of its pushes, where slopes do not hold
@@ -206,6 +207,7 @@ class Evaluator:
         place.view("start", (len(start),), "own")[:] = start
         place.view("path", place.path)[:] = 0.0 if path is None else path
         place.push(pushed)
+        place.silence(silent)
         status = self.of.library.wc_evaluate(*place.records, ctypes.c_int(rounds)) or (place.follow() if follows else 0)
         if status == UNBOUNDED:
             raise SimulationError("what a clock or a baseline would do grows beyond all numbers; try other parameters")
@@ -284,6 +286,13 @@ class _Place:
         if self.pushed is not None and self.pushed.shape != (self.n, len(self.run.pushes)):
             raise ValueError(f"errors of {len(self.run.pushes)} pushes at {self.n} moments have the shape {self.pushed.shape}")
         self.record.pushed = None if self.pushed is None else self.pushed.ctypes.data
+
+    def silence(self, which: np.ndarray | None) -> None:
+        """Asks none of these readings (n, nz)."""
+        self._silent = None if which is None else np.ascontiguousarray(which, np.int8)
+        if self._silent is not None and self._silent.shape != (self.n, self.nz):
+            raise ValueError(f"of {self.nz} readings at {self.n} moments, those of the shape {self._silent.shape} are silent")
+        self.record.silent = None if self._silent is None else self._silent.ctypes.data
 
     def follow(self) -> int:
         """Goes on to where errors of the pushes lead, about which it is linearised then; a status."""

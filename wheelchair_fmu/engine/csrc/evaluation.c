@@ -11,14 +11,17 @@
 #define MOST_STEPS 12 /* that lead a run along forces, or errors of its pushes, at most, */
 #define FARTHEST 3.0  /* standard deviations of a force over which slopes hold, */
 #define ARRIVED 0.03  /* and of a step that leads nowhere else */
+#define GAINED 0.1    /* of -2 log probability, less than which no step is worth another */
+#define ROUNDED 1e-9  /* share of what is new of a force that rounding may be */
 #define MOMENTS 8     /* up to which readings are asked where errors of the pushes led, */
+#define LOST 0.05     /* where more than this share of squares is left than slopes foretell, */
 #define HELD 1.0      /* and the sum of squares by which innovations may differ where slopes hold */
 #define MOMENT 1      /* of the forces that nobody recorded, the moment, */
 #define TREMOR 2      /* that of bumps, */
 #define SWINGS 4      /* and the first of those by which a body swings */
 #define SWEEPS 30     /* of Jacobi's rotations */
 
-static const double shares[] = {1.0, 0.5, 0.25, 0.1}; /* of a step that are tried */
+static const double shares[] = {1.0, 0.5, 0.25, 0.1, 0.03}; /* of a step that are tried */
 
 static int uncertain(const wc_recording *s) { return s->starts + s->constants; }
 static int states(const wc_recording *s) { return s->kernel->states; }
@@ -88,14 +91,15 @@ void wc_evaluation_room(const wc_recording *s, wc_evaluation *e, double *kept_in
                        &e->by_start, &e->slopes, &e->constant, &e->less, &e->as_push};
     long sizes[] = {n * nd, 2, all, all, all, all * size, all, nx + l, all * u, all * u, all * l, l * l, nq * nd};
     double **lent[] = {&e->x, &e->y, &e->driven, &e->p, &e->w, &e->column, &e->busy, &e->innovations, &e->added_again,
-                       &e->before, &e->step, &e->noise, &e->none};
+                       &e->before, &e->step, &e->noise, &e->none, &e->errors, &e->trial};
     long lengths[] = {n * nx, n * s->kernel->outputs, all, s->kernel->parameters, n * s->kernel->inputs, n, busy, all, all,
-                      n * nd + u, n * nd, n * (nq + nd), nx * nx};
+                      n * nd + u, n * nd, n * (nq + nd), nx * nx, n * nq, n * nq};
     room_of_simulated(s, &e->own, &kept, &work);
     for (size_t i = 0; i < sizeof each / sizeof *each; i++) *each[i] = next(&kept, sizes[i]);
     for (size_t i = 0; i < sizeof lent / sizeof *lent; i++) *lent[i] = next(&work, lengths[i]);
     e->reached = (long *)next(&work, 1);
     e->pushed = 0;
+    e->silent = 0;
     room_of_slopes(s, &e->by, &kept, &work);
     room_of_filter(s, &e->f, &kept);
     e->f.nx = (int)nx;
@@ -232,7 +236,7 @@ static void make_filter(const wc_recording *s, wc_evaluation *e) {
     noise.as_push = e->as_push;
     expect_start(s, e, (double *)e->f.start_cov);
     wc_compose(&noise, &by, s->n, &e->f);
-    for (long at = 0; at < readings(s); at++) e->f.present[at] = !isnan(s->recorded[at]);
+    for (long at = 0; at < readings(s); at++) e->f.present[at] = !isnan(s->recorded[at]) && !(e->silent && e->silent[at]);
     wc_drop_kinks(&e->f, s->n, *s->usual, s->speeds[0], s->speeds[1]);
     e->told[0] = wc_design(&e->f, s->n, e->gain, e->scale);
     for (long at = 0; at < readings(s); at++) { /* readings that tell nothing are as they were expected */
@@ -383,6 +387,70 @@ static void better_start(const wc_recording *s, const wc_evaluation *e, const do
     }
 }
 
+/* --- how probable a run is --- */
+
+/* The square of what is new in AR(1) noise of unit variance after what was before, of which `kept` is left; all, where that is 0. */
+static double fresh(double now, double before, double kept) {
+    double size = (now - kept * before) / sqrt(1 - kept * kept);
+    return size * size;
+}
+
+static double off(const wc_recording *s, const wc_evaluation *e, const double *driven, long i, int z) {
+    long at = i * s->noise.nz + z;
+    return e->f.present[at] ? (e->measured[at] - driven[at]) / s->noise.sd[z] : NAN;
+}
+
+/* -2 log probability of readings, of errors of the pushes and of the start together, but for a constant. */
+static double unlikely(const wc_recording *s, const wc_evaluation *e, const double *driven, const double *pushed,
+                       const double *start) {
+    int nz = s->noise.nz, nq = s->noise.nq, all = e->f.nq;
+    double sum = 0, before[WC_MOST] = {0}, kept[WC_MOST] = {0}; /* of each reading: the last one, and what is left of its noise */
+    for (int c = 0; c < uncertain(s); c++) {
+        double sd = prior_sd(s, c), apart = start[c] - prior(s, c);
+        if (sd > 0) sum += apart * apart / (sd * sd);
+    }
+    for (long i = 0; i < s->n; i++) {
+        for (int z = 0; z < nz; z++) {
+            double now = off(s, e, driven, i, z);
+            kept[z] *= i ? e->f.phi[(i - 1) * nz + z] : 0;
+            if (isnan(now)) continue;
+            sum += fresh(now, before[z], kept[z]);
+            before[z] = now;
+            kept[z] = 1;
+        }
+        for (int q = 0; q < nq; q++) {
+            const double *sd = e->f.input_sd + i * all + q;
+            if (!*sd) continue; /* an input without noise */
+            double last = i ? pushed[(i - 1) * nq + q] / sd[-all] : 0;
+            sum += fresh(pushed[i * nq + q] / *sd, last, i ? e->f.input_phi[(i - 1) * all + q] : 0);
+        }
+    }
+    return sum;
+}
+
+/* -2 log probability of the forces of e's path, but for a constant: of processes of first order, some of which one noise drives
+ * together. What is new of these is in some directions next to nothing, of which rounding must not be asked. */
+static double unlikely_forces(const wc_recording *s, const wc_evaluation *e) {
+    int nd = s->noise.nd, nq = s->noise.nq, all = e->f.nq;
+    double sum = 0, L[WC_MOST * WC_MOST], fresh_of[WC_MOST];
+    for (long i = 0; i < s->n; i++) {
+        const double *sd = e->f.input_sd + i * all + nq, *phi = i ? e->f.input_phi + (i - 1) * all + nq : 0;
+        for (int d = 0; d < nd; d++) {
+            fresh_of[d] = e->path[i * nd + d] - (phi ? phi[d] * e->path[(i - 1) * nd + d] : 0);
+            for (int b = 0; b <= d; b++) { /* a row of Cholesky's factor, and what it leaves of the row */
+                double kept = phi ? 1 - phi[d] * phi[b] : 1, left = e->f.common[(nq + d) * all + nq + b] * kept * sd[d] * sd[b];
+                if (b == d) left *= 1 + ROUNDED;
+                for (int c = 0; c < b; c++) left -= L[d * nd + c] * L[b * nd + c];
+                L[d * nd + b] = b == d ? sqrt(fmax(left, 0)) : L[b * nd + b] > 0 ? left / L[b * nd + b] : 0;
+            }
+            for (int b = 0; b < d; b++) fresh_of[d] -= L[d * nd + b] * fresh_of[b];
+            fresh_of[d] = L[d * nd + d] > 0 ? fresh_of[d] / L[d * nd + d] : 0;
+            sum += fresh_of[d] * fresh_of[d];
+        }
+    }
+    return sum;
+}
+
 /* --- one run --- */
 
 static int on_a_path(const wc_recording *s, const wc_evaluation *e) {
@@ -451,11 +519,15 @@ static int linearise(const wc_recording *s, const wc_values *v, wc_evaluation *e
     return WC_OK;
 }
 
-/* e->step: from e's path to the forces as all readings have them; in standard deviations, its largest. */
-static double follow(const wc_recording *s, wc_evaluation *e) {
+/* The first row of those that the k-th of some moments leaves out, the latest first. */
+static long moment(const wc_recording *s, int k) { return (long)((double)s->n - k * ((double)s->n / MOMENTS)); }
+
+/* e->step: from e's path to the forces as the first `until` rows of readings have them; in standard deviations, its largest. */
+static double follow(const wc_recording *s, wc_evaluation *e, long until) {
     int nd = s->noise.nd, nq = e->f.nq;
     double most = 0;
-    wc_smooth(&e->f, s->n, e->gain, e->scale, e->innovations, e->noise);
+    for (long at = 0; at < readings(s); at++) e->added_again[at] = at < until * s->noise.nz ? e->innovations[at] : 0;
+    wc_smooth(&e->f, s->n, e->gain, e->scale, e->added_again, e->noise);
     for (int d = 0; d < nd; d++) {
         double step = 0, sd = 0; /* largest */
         for (long i = 0; i < s->n; i++) {
@@ -468,34 +540,78 @@ static double follow(const wc_recording *s, wc_evaluation *e) {
     return most;
 }
 
-/* As much of a step along the forces, and of the start's, as can be simulated. */
-static int take(const wc_recording *s, const wc_values *v, wc_evaluation *e, double share) {
-    long length = s->n * s->noise.nd;
-    int u = uncertain(s);
+/* -2 log probability of all together where forces and errors of the pushes drive the readings so (n x nz), but for a constant. */
+static double unlikely_led(const wc_recording *s, const wc_evaluation *e, const double *driven, const double *errors) {
+    return unlikely(s, e, driven, errors, e->own.start) + unlikely_forces(s, e);
+}
+
+/* e->added_again: readings from e's start as the forces of its path and these errors of the pushes drive it. */
+static int drive(const wc_recording *s, const wc_values *v, wc_evaluation *e, const double *errors) {
+    felt(s, v, e->own.start + s->starts, e->w, e->column);
+    e->pushed = errors;
+    act(s, e, e->as_push);
+    e->pushed = 0;
+    int status = run(s, v, e, e->own.start, e->x, e->y);
+    if (status == WC_OK) read(s, e->own.start + s->starts, e->y, e->added_again, e->column);
+    return status;
+}
+
+/* As much of a step along the forces, of the start's and of the pushes' errors, as makes all together likelier than `least`:
+ * the share, 0 if none does. */
+static double take(const wc_recording *s, const wc_values *v, wc_evaluation *e, long until, double most, double *least) {
+    int u = uncertain(s), nq = s->noise.nq;
+    long length = s->n * s->noise.nd, pushes = s->n * nq;
     double better[WC_MOST], *path = e->before, *start = e->before + length;
-    better_start(s, e, e->own.r, s->n, better);
+    better_start(s, e, e->own.r, until, better);
     memcpy(path, e->path, sizeof(double) * (size_t)length);
     memcpy(start, e->own.start, sizeof(double) * (size_t)u);
     for (size_t k = 0; k < sizeof shares / sizeof *shares; k++) {
-        for (int c = 0; c < u; c++) e->own.start[c] = start[c] + shares[k] * (better[c] - start[c]);
-        for (long i = 0; i < length; i++) e->path[i] = path[i] + shares[k] * share * e->step[i];
-        if (linearise(s, v, e) == WC_OK) return WC_OK;
+        double share = shares[k] * most;
+        for (int c = 0; c < u; c++) e->own.start[c] = start[c] + share * (better[c] - start[c]);
+        for (long i = 0; i < length; i++) e->path[i] = path[i] + share * e->step[i];
+        for (long i = 0; i < pushes; i++) {
+            e->trial[i] = e->errors[i] + share * (e->noise[i / nq * e->f.nq + i % nq] - e->errors[i]);
+        }
+        if (drive(s, v, e, e->trial) != WC_OK) continue;
+        double found = unlikely_led(s, e, e->added_again, e->trial);
+        if (found >= *least) continue;
+        *least = found;
+        memcpy(e->errors, e->trial, sizeof(double) * (size_t)pushes);
+        return share;
     }
     memcpy(e->path, path, sizeof(double) * (size_t)length);
     memcpy(e->own.start, start, sizeof(double) * (size_t)u);
-    return linearise(s, v, e);
+    return 0;
+}
+
+/* The same of a step to where readings have the forces; where no share of it is likelier, and slopes foretell that much would be,
+ * of one to where those up to some moment have them: after it the run may have gone another way than the chair, and slopes about
+ * that say nothing. */
+static double step(const wc_recording *s, const wc_values *v, wc_evaluation *e, double *least) {
+    double squares = 0, share = 0;
+    for (long at = 0; at < readings(s); at++) squares += isnan(e->own.r[at]) ? 0 : e->own.r[at] * e->own.r[at];
+    int most = *least - squares > LOST * squares ? MOMENTS : 1;
+    for (int k = 0; k < most && share == 0; k++) {
+        double size = follow(s, e, moment(s, k));
+        if (size < ARRIVED) continue;
+        share = take(s, v, e, moment(s, k), fmin(1, FARTHEST / size), least);
+    }
+    return share;
 }
 
 /* A model that lacks much goes another way than the chair did, and slopes along that way say little of what a force, or another
- * value, would do. So all is linearised about where the readings say that forces led the chair. */
+ * value, would do. So all is linearised about where the readings say that forces led the chair: an iterated smoother, which takes
+ * only steps that make all together likelier, as slopes may hold for less than a whole one (Sarkka and Svensson 2020). */
 static int lead(const wc_recording *s, const wc_values *v, wc_evaluation *e) {
-    double before = INFINITY;
+    memset(e->errors, 0, sizeof(double) * (size_t)(s->n * s->noise.nq));
+    double least = unlikely_led(s, e, e->driven, e->errors);
     for (int k = 0; k < MOST_STEPS; k++) {
-        double size = follow(s, e);
-        if (size < ARRIVED) break;
-        int status = take(s, v, e, fmin(1, FARTHEST / size) * (size < before ? 1 : shares[1]));
+        double before = least;
+        if (step(s, v, e, &least) == 0) break;
+        int status = linearise(s, v, e);
         if (status != WC_OK) return status;
-        before = size;
+        if (before - least < GAINED) break;
+        least = unlikely_led(s, e, e->added_again, e->errors); /* by the readings that slopes foretell from here */
     }
     return WC_OK;
 }
@@ -546,38 +662,6 @@ static long room_of_trials(const wc_recording *s, trials *to, double *block) {
 long wc_pushes_room(const wc_recording *s) {
     trials none;
     return room_of_trials(s, &none, 0);
-}
-
-/* The square of what is new in AR(1) noise of unit variance after what was before; 0 in a gap, after which all counts as new. */
-static double fresh(double now, double before, double phi) {
-    double again = isfinite(before) ? phi : 0, size = (now - (again != 0 ? again * before : 0)) / sqrt(1 - again * again);
-    return isnan(size) ? 0 : size * size;
-}
-
-static double off(const wc_recording *s, const wc_evaluation *e, const double *driven, long i, int z) {
-    long at = i * s->noise.nz + z;
-    return e->f.present[at] ? (e->measured[at] - driven[at]) / s->noise.sd[z] : NAN;
-}
-
-/* -2 log probability of readings, of errors of the pushes and of the start together, but for a constant. */
-static double unlikely(const wc_recording *s, const wc_evaluation *e, const double *driven, const double *pushed,
-                       const double *start) {
-    int nz = s->noise.nz, nq = s->noise.nq, all = e->f.nq;
-    double sum = 0;
-    for (int c = 0; c < uncertain(s); c++) {
-        double sd = prior_sd(s, c), apart = start[c] - prior(s, c);
-        if (sd > 0) sum += apart * apart / (sd * sd);
-    }
-    for (long i = 0; i < s->n; i++) {
-        for (int z = 0; z < nz; z++) {
-            sum += fresh(off(s, e, driven, i, z), i ? off(s, e, driven, i - 1, z) : NAN, i ? e->f.phi[(i - 1) * nz + z] : 0);
-        }
-        for (int q = 0; q < nq; q++) {
-            double before = i ? pushed[(i - 1) * nq + q] / e->f.input_sd[(i - 1) * all + q] : NAN;
-            sum += fresh(pushed[i * nq + q] / e->f.input_sd[i * all + q], before, i ? e->f.input_phi[(i - 1) * all + q] : 0);
-        }
-    }
-    return sum;
 }
 
 /* with->driven: readings from this start with pushes larger than their record by with->trial. */
@@ -632,7 +716,7 @@ static int towards(const wc_recording *s, const wc_values *v, wc_evaluation *e, 
     for (long at = 0; at < readings(s); at++) with->told[at] = isnan(e->innovations[at]) ? 0 : e->innovations[at];
     *moved = 0;
     for (int k = 0; k < MOMENTS; k++) {
-        long until = (long)((double)s->n - k * ((double)s->n / MOMENTS));
+        long until = moment(s, k);
         ask(s, e, errors, until, with);
         better_start(s, e, e->own.r, until, better);
         for (size_t j = 0; j < sizeof shares / sizeof *shares; j++) {

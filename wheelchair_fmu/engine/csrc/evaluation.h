@@ -91,8 +91,10 @@ typedef struct {
     double *x, *y;       /* n x states, n x outputs */
     double *driven;      /* n x nz: readings as led */
     double *p, *w, *column, *busy, *innovations, *added_again, *before, *step, *noise, *none;
+    double *errors, *trial; /* n x nq: of the pushes, beside forces that lead the run */
     long *reached;
     const double *pushed; /* n x nq, the caller's: by how much pushes were larger than their record; or 0 */
+    const char *silent;   /* n x nz, the caller's: 1 for a reading that is not asked; or 0 */
 } wc_evaluation;
 
 /* rooms[0]: how many doubles an evaluation keeps, as long as somebody asks for the run again by its filter; rooms[1]: and how

@@ -78,7 +78,9 @@ def insufficient(ladder: Sequence[Step], policy: SearchPolicy = DEFAULT) -> bool
 
 def slight(first: Round) -> tuple[str, ...]:
     """Effects that are surely there and slight, and foretell what was held out better than by chance: the likeliest, and those
-    that data cannot tell from it."""
+    that data cannot tell from it. None where one that is large was likelier: whether it is there was asked beside others."""
+    if first.winner is not None and not first.likelier_slight(first.winner):
+        return ()
     small = [c for c in first.slight if first.likelier_slight(c) and (c.gain is None or c.gain[1] > 0)]
     return tuple(c.effect for c in small if 2 * (small[0].support.slight - c.support.slight) < first.policy.tied)
 

@@ -20,10 +20,12 @@ BLOCK = 2.0  # s of data that a bootstrap resamples together
 @dataclass(frozen=True)
 class Begin:
     """Where the next model of a run begins: from this start, if one is known, and linearised about this path of forces (n, nd),
-    or about these errors of the pushes (n, nq)."""
+    or about these errors of the pushes (n, nq). Readings that tell one model nothing, as the chair comes to rest (`kinks`
+    (n, nz)), are not asked by the next one either: only likelihoods of the same readings can be compared."""
 
     start: Mapping[str, float] = field(default_factory=dict)
     path: np.ndarray | None = None
+    kinks: np.ndarray | None = None
 
 
 @dataclass(frozen=True)

@@ -219,6 +219,7 @@ class Likelihood:
                 begins = replace(begins, path=found.pushed)
             if not np.array_equal(found.start, at):
                 begins = replace(begins, start=tuned(found))
+        begins = replace(begins, kinks=found.whitener.kinks)
         return replace(self._told(run, values, by, found, {**start, **tuned(found)}), begins=begins)
 
     @property
@@ -259,7 +260,10 @@ class Likelihood:
         p = self.variant.vector({n: v for n, v in given.items() if n not in self.start_names})
         at = Values(p, np.array(offsets), delay, self.noise_model.along(chair[MASS]), chair[MASS])
         columns = [n for n in by if n not in self._delays and n not in self.offsets]
-        return self._evaluator.evaluate(self._recording(run), at, columns, start, path, rounds, pushed, follows)
+        silent, recording = self.begins[run.name].kinks, self._recording(run)
+        if silent is not None and silent.shape != recording.readings.shape:
+            silent = None
+        return self._evaluator.evaluate(recording, at, columns, start, path, rounds, pushed, follows, silent)
 
     def _recording(self, run: Run) -> Recording:
         """What the evaluation needs of a run: made once for each noise, but for a long one, whose memory counts."""

@@ -31,7 +31,8 @@ def grouped(effects: Sequence[str], ties: Sequence[Sequence[str]]) -> tuple[tupl
 def tied(r: Round, effect: str) -> tuple[str, ...]:
     """An effect that a round found, and every other that this campaign cannot tell from it, however small it would be. What
     predicts held-out runs better is so much likelier, if it was found. In a search again, beside all that was found,
-    fitted runs alone tell; but what is more probable than the effect itself, by all runs, is never told from it."""
+    fitted runs alone tell; but what is more probable than the effect itself, by all runs, is never told from it, nor the most
+    probable others that have to be named for it to be likelier than not that one of all these is there."""
     leader = _of(r, effect)
     group = [leader.effect]
     for c in r.candidates:
@@ -44,7 +45,19 @@ def tied(r: Round, effect: str) -> tuple[str, ...]:
         likelier = c.matters and r.beliefs[c.effect].there > r.beliefs[effect].there
         if near or same or likelier:
             group.append(c.effect)
-    return tuple(group)
+    return (*group, *_needed_beside(r, group))
+
+
+def _needed_beside(r: Round, group: Sequence[str]) -> list[str]:
+    """The others, the most probable first, that make it likelier than not that one of them or of a `group` is there; none where
+    all together do not."""
+    others = [c.effect for c in r.candidates if c.lawful and c.matters and c.effect not in group]
+    if not others:
+        return []
+    others.sort(key=lambda e: -r.beliefs[e].there)
+    sums = sum(r.beliefs[e].there for e in group) + np.cumsum([0.0, *(r.beliefs[e].there for e in others)])
+    enough = np.flatnonzero(sums > 0.5)
+    return others[: enough[0]] if len(enough) else []
 
 
 def probable(r: Round, effect: str) -> bool:
