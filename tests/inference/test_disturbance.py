@@ -156,7 +156,8 @@ def test_a_heavier_chair_is_not_likelier_for_its_quieter_ride():
 
 
 def test_a_run_that_is_led_ends_on_the_same_path_wherever_it_begins(sample):
-    """A model that lacks a large force, with that force among the noise: linearised where it leads, and nowhere else."""
+    """A model that lacks a large force, with that force among the noise: linearised where it leads, and nowhere else. But where
+    the chair rolls to a stop, dry friction holds it by more than one force, each the likeliest beside those next to it."""
     rng = np.random.default_rng(8)
     campaign = ridden(sample, rng, lambda run, without: (wandering(rng, run.time, 8.0), wandering(rng, run.time, 1.0)))
     noise = replace(NoiseModel(campaign.noise), force=8.0, moment=1.0)
@@ -164,9 +165,15 @@ def test_a_run_that_is_led_ends_on_the_same_path_wherever_it_begins(sample):
     first = likelihood.evidence(campaign.fit, {}, ())
     elsewhere = {r.name: Begin(path=3.0 * rng.standard_normal(FORCED) * np.ones((len(r.time), FORCED))) for r in campaign.fit}
     again = likelihood.begun(elsewhere).evidence(campaign.fit, {}, ())
-    assert again.deviance == pytest.approx(first.deviance, abs=5.0)
+    stopped = 0
     for e, other in zip(first.runs, again.runs, strict=True):
-        np.testing.assert_allclose(e.path, other.path, atol=0.2 * max(noise.force, noise.moment))  # steps end at 0.03
+        if (e.measured[:, e.channels.index("wheel_speed_l")] < 0.05).any():
+            assert other.deviance == pytest.approx(e.deviance, abs=15)
+            stopped += 1
+            continue
+        assert other.deviance == pytest.approx(e.deviance, abs=0.05)
+        np.testing.assert_allclose(e.path, other.path, atol=0.01 * noise.force)
+    assert stopped == 1
     assert float(np.mean(first.r**2)) == pytest.approx(1, abs=0.03)
     assert first.summary().rms == pytest.approx(first.rms, rel=1e-9), "what is kept of a run is judged as the run was"
 

@@ -556,8 +556,8 @@ static int drive(const wc_recording *s, const wc_values *v, wc_evaluation *e, co
     return status;
 }
 
-/* As much of a step along the forces, of the start's and of the pushes' errors, as makes all together likelier than `least`:
- * the share, 0 if none does. */
+/* As much of a step along the forces, of the start's and of the pushes' errors, as makes all together likelier than `least`, by
+ * more than is nothing: the share, 0 if none does. */
 static double take(const wc_recording *s, const wc_values *v, wc_evaluation *e, long until, double most, double *least) {
     int u = uncertain(s), nq = s->noise.nq;
     long length = s->n * s->noise.nd, pushes = s->n * nq;
@@ -574,7 +574,8 @@ static double take(const wc_recording *s, const wc_values *v, wc_evaluation *e, 
         }
         if (drive(s, v, e, e->trial) != WC_OK) continue;
         double found = unlikely_led(s, e, e->added_again, e->trial);
-        if (found >= *least) continue;
+        if (fabs(*least - found) < GAINED) break; /* so is a part of it */
+        if (found > *least) continue;
         *least = found;
         memcpy(e->errors, e->trial, sizeof(double) * (size_t)pushes);
         return share;
@@ -606,11 +607,9 @@ static int lead(const wc_recording *s, const wc_values *v, wc_evaluation *e) {
     memset(e->errors, 0, sizeof(double) * (size_t)(s->n * s->noise.nq));
     double least = unlikely_led(s, e, e->driven, e->errors);
     for (int k = 0; k < MOST_STEPS; k++) {
-        double before = least;
         if (step(s, v, e, &least) == 0) break;
         int status = linearise(s, v, e);
         if (status != WC_OK) return status;
-        if (before - least < GAINED) break;
         least = unlikely_led(s, e, e->added_again, e->errors); /* by the readings that slopes foretell from here */
     }
     return WC_OK;
