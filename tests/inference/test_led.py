@@ -8,27 +8,36 @@ import numpy as np
 import pytest
 
 from tests.flips import flipping
+from wheelchair_fmu.campaign import Campaign
 from wheelchair_fmu.inference.evidence.evidence import RunEvidence
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.evidence.noise_model import NoiseModel
 from wheelchair_fmu.model.variant import Variant
 
 INERTIA = {"effect.caster_inertia.I": 0.01}
-WRONG = {**INERTIA, "resistance.f_f": 0.026}  # of 0.02, so that forces have much to make up for
+CHAIR = Variant().with_effects(["caster_inertia"])
+
+
+def wrong(f_f: float) -> dict[str, float]:
+    """The chair with rolling resistance other than 0.02, for which forces have to make up."""
+    return {**INERTIA, "resistance.f_f": f_f}
 
 
 @pytest.fixture(scope="module")
-def led(tmp_path_factory):
-    """Spins with casters that swing round, which no push leads where the chair went, and the noise of forces among the rest."""
-    chair = Variant().with_effects(["caster_inertia"])
-    campaign = flipping(tmp_path_factory.mktemp("led") / "campaign", chair, INERTIA)
-    noise = replace(NoiseModel(campaign.noise), force=3.0, moment=1.0, tremor=0.5, body=1.0, floor=1.0)
-    return campaign, Likelihood(campaign, chair, noise, columns=tuple(WRONG)).led(campaign)
+def campaign(tmp_path_factory):
+    """Spins with casters that swing round, which no push leads where the chair went."""
+    return flipping(tmp_path_factory.mktemp("led") / "campaign", CHAIR, INERTIA)
 
 
-def unlikely(likelihood: Likelihood, e: RunEvidence, path: np.ndarray) -> float:
+def led(campaign: Campaign, strong: float) -> Likelihood:
+    """Forces that are so many times as strong as usual are among the noise."""
+    noise = replace(NoiseModel(campaign.noise), force=3.0 * strong, moment=strong, tremor=0.5, body=1.0, floor=1.0)
+    return Likelihood(campaign, CHAIR, noise, columns=tuple(wrong(0.02))).led(campaign)
+
+
+def unlikely(likelihood: Likelihood, e: RunEvidence, values: dict[str, float], path: np.ndarray) -> float:
     """−2 log probability of readings and of forces of a path (n, d) together, but for a constant."""
-    _, driven = likelihood._simulated(e.run, WRONG, e.start, path)
+    _, driven = likelihood._simulated(e.run, values, e.start, path)
     sd = np.array([likelihood.noise_model.sd[c] for c in e.channels])
     sum_ = float(np.nansum((((e.measured - driven) / sd) ** 2)[~e.whitener.kinks]))
     arrays, first = e.whitener.whitener.arrays, e.whitener.whitener.recorded
@@ -42,24 +51,24 @@ def unlikely(likelihood: Likelihood, e: RunEvidence, path: np.ndarray) -> float:
     return sum_
 
 
-def test_the_forces_that_lead_a_run_are_the_likeliest(led):
+@pytest.mark.parametrize(("strong", "f_f", "share"), [(1.0, 0.026, 0.01), (3.0, 0.023, 0.03)])
+def test_the_forces_that_lead_a_run_are_the_likeliest(campaign, strong, f_f, share):
     """Where casters swing round, slopes hold for much less than a whole step: one that is taken all the same leads anywhere,
     and to no end. At the likeliest forces readings and forces are as likely as innovations have them."""
-    campaign, likelihood = led
-    (e,) = likelihood.evidence(campaign.fit, WRONG).runs
-    least = unlikely(likelihood, e, e.path)
+    likelihood, values = led(campaign, strong), wrong(f_f)
+    (e,) = likelihood.evidence(campaign.fit, values).runs
+    least = unlikely(likelihood, e, values, e.path)
     assert least == pytest.approx(float(np.nansum(e.r**2)), rel=0.02)
-    assert least < 0.01 * unlikely(likelihood, e, 0 * e.path)
-    assert min(unlikely(likelihood, e, share * e.path) for share in (0.98, 1.02)) > least
+    assert least < share * unlikely(likelihood, e, values, 0 * e.path)
+    assert min(unlikely(likelihood, e, values, times * e.path) for times in (0.98, 1.02)) > least
 
 
-def test_models_that_are_compared_are_asked_by_the_same_readings(led):
+def test_models_that_are_compared_are_asked_by_the_same_readings(campaign):
     """What tells one model nothing, as the chair comes to rest, tells the next one nothing either."""
-    campaign, likelihood = led
-    first = likelihood.evidence(campaign.runs, WRONG)
+    likelihood = led(campaign, 1.0)
+    first = likelihood.evidence(campaign.runs, wrong(0.026))
     assert any(e.whitener.kinks.any() for e in first.runs), "somewhere the chair turns round"
-    other = {**WRONG, "resistance.f_f": 0.015}
-    alone, after = (some.evidence(campaign.runs, other) for some in (likelihood, likelihood.continued(first)))
+    alone, after = (some.evidence(campaign.runs, wrong(0.015)) for some in (likelihood, likelihood.continued(first)))
     assert any((e.whitener.kinks != f.whitener.kinks).any() for e, f in zip(alone.runs, first.runs, strict=True))
     for e, f in zip(after.runs, first.runs, strict=True):
         assert e.whitener.kinks[f.whitener.kinks].all()

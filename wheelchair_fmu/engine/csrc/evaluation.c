@@ -522,12 +522,30 @@ static int linearise(const wc_recording *s, const wc_values *v, wc_evaluation *e
 /* The first row of those that the k-th of some moments leaves out, the latest first. */
 static long moment(const wc_recording *s, int k) { return (long)((double)s->n - k * ((double)s->n / MOMENTS)); }
 
+/* e->noise: what the first `until` rows of readings have acted, by their innovations (n x nz); `some` has room for these. */
+static void ask(const wc_recording *s, wc_evaluation *e, const double *innovations, long until, double *some) {
+    for (long at = 0; at < readings(s); at++) some[at] = at < until * s->noise.nz ? innovations[at] : 0;
+    wc_smooth(&e->f, s->n, e->gain, e->scale, some, e->noise);
+}
+
+/* to: readings (n x nz) from this start, as forces of e's path and these errors of the pushes drive it. */
+static int drive(const wc_recording *s, const wc_values *v, wc_evaluation *e, const double *start, const double *errors,
+                 double *to) {
+    const double *pushed = e->pushed;
+    felt(s, v, start + s->starts, e->w, e->column);
+    e->pushed = errors;
+    act(s, e, e->as_push);
+    e->pushed = pushed;
+    int status = run(s, v, e, start, e->x, e->y);
+    if (status == WC_OK) read(s, start + s->starts, e->y, to, e->column);
+    return status;
+}
+
 /* e->step: from e's path to the forces as the first `until` rows of readings have them; in standard deviations, its largest. */
 static double follow(const wc_recording *s, wc_evaluation *e, long until) {
     int nd = s->noise.nd, nq = e->f.nq;
     double most = 0;
-    for (long at = 0; at < readings(s); at++) e->added_again[at] = at < until * s->noise.nz ? e->innovations[at] : 0;
-    wc_smooth(&e->f, s->n, e->gain, e->scale, e->added_again, e->noise);
+    ask(s, e, e->innovations, until, e->added_again);
     for (int d = 0; d < nd; d++) {
         double step = 0, sd = 0; /* largest */
         for (long i = 0; i < s->n; i++) {
@@ -545,20 +563,16 @@ static double unlikely_led(const wc_recording *s, const wc_evaluation *e, const 
     return unlikely(s, e, driven, errors, e->own.start) + unlikely_forces(s, e);
 }
 
-/* e->added_again: readings from e's start as the forces of its path and these errors of the pushes drive it. */
-static int drive(const wc_recording *s, const wc_values *v, wc_evaluation *e, const double *errors) {
-    felt(s, v, e->own.start + s->starts, e->w, e->column);
-    e->pushed = errors;
-    act(s, e, e->as_push);
-    e->pushed = 0;
-    int status = run(s, v, e, e->own.start, e->x, e->y);
-    if (status == WC_OK) read(s, e->own.start + s->starts, e->y, e->added_again, e->column);
-    return status;
+/* Back to the path and the start from which the last step was tried. */
+static void restore(const wc_recording *s, wc_evaluation *e) {
+    long length = s->n * s->noise.nd;
+    memcpy(e->path, e->before, sizeof(double) * (size_t)length);
+    memcpy(e->own.start, e->before + length, sizeof(double) * (size_t)uncertain(s));
 }
 
-/* As much of a step along the forces, of the start's and of the pushes' errors, as makes all together likelier than `least`, by
- * more than is nothing: the share, 0 if none does. */
-static double take(const wc_recording *s, const wc_values *v, wc_evaluation *e, long until, double most, double *least) {
+/* Takes as much of a step along the forces, of the start's and of the pushes' errors, as makes all together likelier than `least`
+ * by more than is nothing; 0 where no share of it does. e->added_again: the readings there. */
+static int take(const wc_recording *s, const wc_values *v, wc_evaluation *e, long until, double most, double *least) {
     int u = uncertain(s), nq = s->noise.nq;
     long length = s->n * s->noise.nd, pushes = s->n * nq;
     double better[WC_MOST], *path = e->before, *start = e->before + length;
@@ -572,32 +586,30 @@ static double take(const wc_recording *s, const wc_values *v, wc_evaluation *e, 
         for (long i = 0; i < pushes; i++) {
             e->trial[i] = e->errors[i] + share * (e->noise[i / nq * e->f.nq + i % nq] - e->errors[i]);
         }
-        if (drive(s, v, e, e->trial) != WC_OK) continue;
+        if (drive(s, v, e, e->own.start, e->trial, e->added_again) != WC_OK) continue;
         double found = unlikely_led(s, e, e->added_again, e->trial);
         if (fabs(*least - found) < GAINED) break; /* so is a part of it */
         if (found > *least) continue;
         *least = found;
         memcpy(e->errors, e->trial, sizeof(double) * (size_t)pushes);
-        return share;
+        return 1;
     }
-    memcpy(e->path, path, sizeof(double) * (size_t)length);
-    memcpy(e->own.start, start, sizeof(double) * (size_t)u);
+    restore(s, e);
     return 0;
 }
 
 /* The same of a step to where readings have the forces; where no share of it is likelier, and slopes foretell that much would be,
  * of one to where those up to some moment have them: after it the run may have gone another way than the chair, and slopes about
  * that say nothing. */
-static double step(const wc_recording *s, const wc_values *v, wc_evaluation *e, double *least) {
-    double squares = 0, share = 0;
+static int step(const wc_recording *s, const wc_values *v, wc_evaluation *e, double *least) {
+    double squares = 0;
     for (long at = 0; at < readings(s); at++) squares += isnan(e->own.r[at]) ? 0 : e->own.r[at] * e->own.r[at];
     int most = *least - squares > LOST * squares ? MOMENTS : 1;
-    for (int k = 0; k < most && share == 0; k++) {
+    for (int k = 0; k < most; k++) {
         double size = follow(s, e, moment(s, k));
-        if (size < ARRIVED) continue;
-        share = take(s, v, e, moment(s, k), fmin(1, FARTHEST / size), least);
+        if (size >= ARRIVED && take(s, v, e, moment(s, k), fmin(1, FARTHEST / size), least)) return 1;
     }
-    return share;
+    return 0;
 }
 
 /* A model that lacks much goes another way than the chair did, and slopes along that way say little of what a force, or another
@@ -606,11 +618,12 @@ static double step(const wc_recording *s, const wc_values *v, wc_evaluation *e, 
 static int lead(const wc_recording *s, const wc_values *v, wc_evaluation *e) {
     memset(e->errors, 0, sizeof(double) * (size_t)(s->n * s->noise.nq));
     double least = unlikely_led(s, e, e->driven, e->errors);
-    for (int k = 0; k < MOST_STEPS; k++) {
-        if (step(s, v, e, &least) == 0) break;
-        int status = linearise(s, v, e);
-        if (status != WC_OK) return status;
-        least = unlikely_led(s, e, e->added_again, e->errors); /* by the readings that slopes foretell from here */
+    for (int k = 0; k < MOST_STEPS && step(s, v, e, &least); k++) {
+        if (linearise(s, v, e) != WC_OK) { /* it can be run there, and no slope be followed */
+            restore(s, e);
+            return linearise(s, v, e);
+        }
+        least = unlikely_led(s, e, e->added_again, e->errors); /* anew, as other readings may tell something from here */
     }
     return WC_OK;
 }
@@ -663,18 +676,6 @@ long wc_pushes_room(const wc_recording *s) {
     return room_of_trials(s, &none, 0);
 }
 
-/* with->driven: readings from this start with pushes larger than their record by with->trial. */
-static int simulate_trial(const wc_recording *s, const wc_values *v, wc_evaluation *e, const double *start, trials *with) {
-    int nq = s->noise.nq;
-    felt(s, v, start + s->starts, e->w, e->column);
-    for (long i = 0; i < s->n; i++) {
-        for (int q = 0; q < nq; q++) e->w[i * s->kernel->inputs + s->noise.pushes[q]] += with->trial[i * nq + q];
-    }
-    int status = run(s, v, e, start, e->x, e->y);
-    if (status == WC_OK) read(s, start + s->starts, e->y, with->driven, e->column);
-    return status;
-}
-
 /* Do slopes say what is simulated from that start? Innovations allow for another start and other pushes, so that to first order
  * they do not depend on these. */
 static int slopes_hold(const wc_recording *s, wc_evaluation *e, const double *start, trials *with) {
@@ -695,33 +696,24 @@ static int slopes_hold(const wc_recording *s, wc_evaluation *e, const double *st
     return sum < HELD;
 }
 
-/* with->step: from these errors to those that the first `until` rows of readings want. */
-static void ask(const wc_recording *s, wc_evaluation *e, const double *errors, long until, trials *with) {
-    int nq = s->noise.nq;
-    for (long at = 0; at < readings(s); at++) with->some[at] = at < until * s->noise.nz ? with->told[at] : 0;
-    wc_smooth(&e->f, s->n, e->gain, e->scale, with->some, e->noise);
-    for (long i = 0; i < s->n; i++) {
-        for (int q = 0; q < nq; q++) with->step[i * nq + q] = e->noise[i * e->f.nq + q] - errors[i * nq + q];
-    }
-}
-
 /* One step to where readings have the start and the errors of the pushes; moved: 0 where slopes hold as far as that, or no step
  * makes all together likelier. Where a simulation has gone another way than the chair, slopes about it say nothing of what comes
  * after: so besides all readings, those up to each of some moments are asked. */
 static int towards(const wc_recording *s, const wc_values *v, wc_evaluation *e, double *errors, trials *with, int *moved) {
-    int u = uncertain(s);
-    long length = s->n * s->noise.nq;
+    int u = uncertain(s), nq = s->noise.nq;
+    long length = s->n * nq;
     double least = unlikely(s, e, e->driven, errors, e->own.start), better[WC_MOST], start[WC_MOST], best[WC_MOST];
     for (long at = 0; at < readings(s); at++) with->told[at] = isnan(e->innovations[at]) ? 0 : e->innovations[at];
     *moved = 0;
     for (int k = 0; k < MOMENTS; k++) {
         long until = moment(s, k);
-        ask(s, e, errors, until, with);
+        ask(s, e, with->told, until, with->some);
+        for (long i = 0; i < length; i++) with->step[i] = e->noise[i / nq * e->f.nq + i % nq] - errors[i];
         better_start(s, e, e->own.r, until, better);
         for (size_t j = 0; j < sizeof shares / sizeof *shares; j++) {
             for (int c = 0; c < u; c++) start[c] = e->own.start[c] + shares[j] * (better[c] - e->own.start[c]);
             for (long i = 0; i < length; i++) with->trial[i] = errors[i] + shares[j] * with->step[i];
-            if (simulate_trial(s, v, e, start, with) != WC_OK) continue;
+            if (drive(s, v, e, start, with->trial, with->driven) != WC_OK) continue;
             if (!k && !j && slopes_hold(s, e, start, with)) return WC_OK;
             double found = unlikely(s, e, with->driven, with->trial, start);
             if (found >= least) continue;
