@@ -63,6 +63,7 @@ def test_its_json_has_the_keys_that_are_fixed(sampled):
     assert content.keys() >= KEYS
     assert all(row.keys() >= ROW for row in content["ranking"])
     assert content["ranking"][0]["effect"] == content["effects"][0]
+    assert content["rests_on"] == [], "every run but one tells of it"
     parameter = content["ranking"][0]["parameters"]["D"]
     assert parameter.keys() == {"estimate", "se", "unit", "smallest_interesting", "made_up_by", "interval"}
     assert parameter["unit"] == "N"

@@ -48,6 +48,7 @@ from .decide import Facts, Larger, decide, instead_of_small, slight
 from .experiment import Experiment, reveal, separate
 from .foretold import remarks
 from .leftover import leftover, prepare, settled
+from .one_run import Resting, resting
 
 
 @dataclass(frozen=True)
@@ -115,6 +116,14 @@ class Diagnosis:
         """What would be large instead of what was found to be small, as far as data cannot tell them apart."""
         return instead_of_small(self.rounds[0]) if self.verdict == "small" else ()
 
+    @cached_property
+    def rests_on(self) -> tuple[Resting, ...]:
+        """What is named for the sake of a single run."""
+        if self.verdict not in ("missing", "tie", "outside") or self.proposal:
+            return ()
+        decided = {e: self._decided(e) for e in self.effects if e in self.included}
+        return resting(grouped([*decided], self.ties), decided, self.included, self.models.policy)
+
     def _decided(self, effect: str) -> Round:
         """The round that judges an effect of the final model, beside all others of it where there is such a round."""
         return _deciding(effect, self.included, self.beside, self.rounds)
@@ -164,7 +173,8 @@ def diagnose(
     found = tried.found if tried and tried.found else _with_forces(concluded(search, generic or {}), tried, among)
     if found.verdict == "outside" and experiments and not found.to_fit:
         found = replace(found, next_experiment=lead(found.calibration, found.unexplained))
-    notes = (*found.notes, *remarks(found.ladder, found.models.setting.noise_model.sd))
+    said = remarks(found.ladder, found.models.setting.noise_model.sd)
+    notes = (*found.notes, *said, *(one.words for one in found.rests_on))
     return replace(found, notes=notes, seconds=time.monotonic() - began)
 
 

@@ -210,6 +210,10 @@ class Evidence:
         """See `RunEvidence.summary`."""
         return Evidence(tuple(e.summary() for e in self.runs), ())
 
+    def without(self, run: str) -> Evidence:
+        """The same without one run."""
+        return Evidence(tuple(e for e in self.runs if e.run.name != run), self.by)
+
     def only(self, names: Sequence[str]) -> Evidence:
         """The same evidence with sensitivities by some of its parameters."""
         at = [self.by.index(n) for n in names]

@@ -36,6 +36,7 @@ def as_json(d: Diagnosis) -> dict[str, Any]:
         "leftover": leftover_json(d),
         "next_experiment": d.next_experiment,
         "to_fit": d.to_fit,
+        "rests_on": [one._asdict() for one in d.rests_on],
         "seen": d.seen,
         "sync": {
             run: {device: {"offset": late.seconds, "se": late.sd} for device, late in of.items()}

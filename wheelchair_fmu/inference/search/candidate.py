@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from ..estimation.fit import Fit
-from ..estimation.marginal import Support, squared, support_of
+from ..estimation.marginal import LEAST, Support, squared, support_of
 from ..evidence.evidence import Evidence
 from ..models.factory import members_of
 from ..policy import DEFAULT, SearchPolicy
+
+
+@dataclass(frozen=True)
+class WithoutRun:
+    """What all fitted runs but one say of a candidate: by how much its sizes by usual laws (k,) are `moved`, how many times
+    their standard errors are `wider` (k,), and the `fall` of −2 log likelihood; None where that follows from these."""
+
+    moved: np.ndarray
+    wider: np.ndarray
+    fall: float | None
 
 
 @dataclass(frozen=True)
@@ -40,6 +50,7 @@ class Candidate:
     beside: tuple[float, float] | None = None  # dispersion and correlation that the likeliest of its round leaves
     afresh: bool = False  # its runs start where the campaign has them, and not where the model without it wants them
     by_errors: bool = False  # its fall is by standard errors, which allow for how large and how correlated residuals are
+    without_run: Mapping[str, WithoutRun] = field(default_factory=dict)  # by fitted run
     policy: SearchPolicy = DEFAULT
 
     @property
@@ -77,6 +88,18 @@ class Candidate:
         (size, *covariances), ahead = self.usual, self.gain[0] / self.scale if self.gain else 0.0
         what = size, covariances, self.delta, self.one_sided, self.fall, ahead, self.policy, self.bounded
         return support_of(self.effect, *what)
+
+    def leaving_out(self, run: str) -> Candidate:
+        """The same as all fitted runs but one have it."""
+        if run not in self.without_run:
+            return self
+        (size, *covariances), out = self.usual, self.without_run[run]
+        usual = size + out.moved, *(c * np.outer(out.wider, out.wider) for c in covariances)
+        fewer = replace(self, usual=usual, estimate=self.estimate + out.moved)
+        nearer = min(fewer._away) / max(min(self._away), LEAST)
+        ratio = self.likelihood_ratio * nearer if out.fall is None else out.fall / self.dispersion
+        fit = replace(self.fit, evidence=self.fit.evidence.without(run))
+        return replace(fewer, fit=fit, likelihood_ratio=ratio, bounded=self.bounded * nearer)
 
     @property
     def size(self) -> np.ndarray:

@@ -11,12 +11,13 @@ from scipy import special
 from ..chance import chance_beyond
 from ..estimation.fit import Fit
 from ..estimation.inverse import inverse
+from ..estimation.left_out import left_out
 from ..estimation.marginal import support_of
 from ..estimation.score import RUNS
 from ..estimation.statistics import between_runs, bounded, correlation_time, held_out_gain, sandwich, seen_directions
 from ..models.hypothesis import Model
 from ..models.models import Models
-from .candidate import Candidate
+from .candidate import Candidate, WithoutRun
 from .usual import Usual, usual
 
 
@@ -52,10 +53,27 @@ def judge(models: Models, base: Model, found: Model, effect: str, names: Sequenc
         heldout=held.summary(),
         lawful=not bool(np.all((estimate <= near) & one_sided)),
         stretched=bool(np.any((estimate >= upper - near) | (estimate <= lower + near) & ~one_sided)),
+        without_run=_without(base.fit, fit, at_usual, ratio * dispersion, led=w.leads),
         policy=models.policy,
         bounded=bounded(fit, at_usual.own, at_usual.size, at_usual.moved(told)),
         by_errors=w.leads,
     )
+
+
+def _without(base: Fit, found: Fit, at_usual: Usual, fall: float, *, led: bool) -> dict[str, WithoutRun]:
+    """What a fit beside `base` says of its own sizes by all fitted runs but one, by name of that: see `left_out`. Where forces
+    lead the runs, the fall follows from standard errors alone."""
+    own, before, after = at_usual.own, left_out(base), left_out(found)
+    whole = base.deviance - found.deviance
+    return {
+        run: WithoutRun(
+            at_usual.slopes[own] @ out.moved,
+            out.wider[own],
+            None if led else fall - whole + before[run].deviance - out.deviance,
+        )
+        for run, out in after.items()
+        if run in before
+    }
 
 
 def _paid(found: Fit, names: Sequence[str], covariance: np.ndarray) -> float:

@@ -22,7 +22,7 @@ MOST = 500.0  # log odds that are told apart
 def beliefs(found: Mapping[str, Round], last: Round, one_sided: Mapping[str, np.ndarray]) -> dict[str, Belief]:
     """Of every effect that was scored. What was `found`, by effect, stands against its rivals in the round that decides on it;
     others may be there beside all that was found, by the `last` round, or in the place of what they rival."""
-    rounds = {effect: instead(r, _rivals(r, effect, found)) for effect, r in found.items()}
+    rounds = {effect: in_place(r, effect, found) for effect, r in found.items()}
     besides = beside(last, one_sided)
     out = {}
     for effect in dict.fromkeys([*found, *besides, *(e for by in rounds.values() for e in by)]):
@@ -30,6 +30,11 @@ def beliefs(found: Mapping[str, Round], last: Round, one_sided: Mapping[str, np.
         chances = [by[effect] for by in told if effect in by]
         out[effect] = Belief(_either(b.there for b in chances), _either(b.large for b in chances))
     return out
+
+
+def in_place(r: Round, effect: str, found: Container[str]) -> dict[str, Belief]:
+    """Of an effect that a round decides on, and of its rivals, of which one is what the round's model lacks, or none."""
+    return instead(r, _rivals(r, effect, found))
 
 
 def _rivals(r: Round, effect: str, found: Container[str]) -> list[Candidate]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -67,10 +67,16 @@ class Round:
 
     def decided_by(self, policy: SearchPolicy) -> Round:
         """The same round, as another policy judges what was tried."""
-        candidates, groups = (
-            tuple(ranked(replace(c, policy=policy) for c in which)) for which in (self.candidates, self.groups)
-        )
-        return replace(self, policy=policy, candidates=candidates, groups=groups)
+        return replace(self._with(lambda c: replace(c, policy=policy)), policy=policy)
+
+    def leaving_out(self, run: str) -> Round:
+        """The same round, as all fitted runs but one have it."""
+        fit = replace(self.fit, evidence=self.fit.evidence.without(run))
+        return replace(self._with(lambda c: c.leaving_out(run)), fit=fit)
+
+    def _with(self, changed: Callable[[Candidate], Candidate]) -> Round:
+        candidates, groups = (tuple(ranked(map(changed, which))) for which in (self.candidates, self.groups))
+        return replace(self, candidates=candidates, groups=groups)
 
     @cached_property
     def present(self) -> dict[str, float]:
