@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks.independent.campaigns import make
 from tests.inference.linear import evidence, least_squares, noise, signals, values
-from wheelchair_fmu.campaign import read
+from wheelchair_fmu.campaign import Campaign, read
 from wheelchair_fmu.inference.decision.ahead import Ahead, which_to_fit
 from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.estimation.fit import Fit
@@ -18,6 +18,8 @@ from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.explain.ranking import as_json
 from wheelchair_fmu.inference.policy import DEFAULT
 from wheelchair_fmu.inference.residual.staircase import Step
+from wheelchair_fmu.model.effects import bundled
+from wheelchair_fmu.model.variant import Variant
 
 NAMES, LONG = ("a", "b"), 500
 NOTHING_KNOWN = np.zeros(2)
@@ -79,16 +81,31 @@ def test_which_run_to_fit_is_said_where_only_held_out_ones_show_an_error():
     assert which_to_fit((step(2.0, 3.0), step(1.5, 2.0)), plain) == (), "fitted runs show it as well"
 
 
+def swinging(campaign: Campaign, size: float) -> Campaign:
+    """The first two held-out runs with a yaw rate that swings by so much (rad/s)."""
+    swung = {
+        r.name: replace(r, channels={**r.channels, "yaw_rate": r.channels["yaw_rate"] + size * np.sin(2 * r.time)})
+        for r in campaign.holdout[:2]
+    }
+    return replace(campaign, runs=tuple(swung.get(r.name, r) for r in campaign.runs))
+
+
 def test_a_model_is_not_adequate_where_held_out_runs_have_what_no_fitted_one_shows(tmp_path):
     """Three held-out runs of a chair of which nothing is missing, in two of which the yaw rate swings by itself."""
     campaign = read(make(tmp_path / "null", {}, seed=4))
-    held = [r for r in campaign.runs if r.role == "holdout"]
-    swung = {
-        r.name: replace(r, channels={**r.channels, "yaw_rate": r.channels["yaw_rate"] + 0.03 * np.sin(2 * r.time)})
-        for r in held[:2]
-    }
-    found = diagnose(replace(campaign, runs=tuple(swung.get(r.name, r) for r in campaign.runs)))
+    swung = {r.name for r in campaign.holdout[:2]}
+    found = diagnose(swinging(campaign, 0.03))
     assert found.ladder[-1].fit < 1.05 and found.ladder[-1].heldout > 1.3
     assert found.verdict == "outside" and not found.effects
     assert any(note.startswith(tuple(swung)) and "yaw_rate most" in note for note in found.notes)
     assert found.to_fit in swung and as_json(found)["to_fit"] == found.to_fit
+
+
+def test_nor_is_one_among_forces_that_nobody_recorded(tmp_path):
+    """On an uneven floor, the yaw rate of two held-out runs swings by itself, by more than that floor does."""
+    few = {effect: bundled()[effect] for effect in ("rolling_resistance_asymmetry", "aerodynamic_drag")}
+    campaign = swinging(read(make(tmp_path / "floor", {"uneven_floor": {"slope": 0.003}}, seed=1)), 0.1)
+    found = diagnose(campaign, Variant(catalogue=few))
+    assert found.models.factory.leads and found.ladder[-1].fit < 1.2 and found.ladder[-1].heldout > 1.3
+    assert found.verdict == "outside" and found.to_fit in {r.name for r in campaign.holdout[:2]}
+    assert any(note.startswith(found.to_fit) and "yaw_rate most" in note for note in found.notes)

@@ -53,8 +53,9 @@ class Ahead:
 
 def ahead(models: Models, top: Model, ladder: Sequence[Step], found: bool) -> Ahead:
     """Of the last model of a search, in which something was `found` or not. Nothing is asked where the error on held-out runs
-    is the noise, or where forces lead the runs: what lasts there is theirs."""
-    if models.factory.leads or not ladder[-1].heldout > models.policy.a_little:
+    is the noise; where forces lead the runs, what lasts is theirs, as long as no adequate model leaves more."""
+    policy = models.policy
+    if not ladder[-1].heldout > (policy.unexplained if models.factory.leads else policy.a_little):
         return Ahead()
     likelihood, fit = models.likelihood(top.effects), top.fit
     held = likelihood.evidence(models.campaign.holdout, fit.values, fit.names, tune_start=TUNING)
@@ -64,7 +65,7 @@ def ahead(models: Models, top: Model, ladder: Sequence[Step], found: bool) -> Ah
 def run_to_fit(ladder: Sequence[Step], told: Ahead, policy: SearchPolicy = DEFAULT) -> str | None:
     """The held-out run to fit as well, where only such runs show an error."""
     last = ladder[-1]
-    if not told.left.runs or last.fit > policy.structured or not last.heldout > policy.unexplained:
+    if not told.left.runs or not last.fit <= policy.unexplained < last.heldout:
         return None
     return told.worst[1] if told.unexplained(policy) else _furthest(told)
 
