@@ -5,11 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from wheelchair_fmu.api.lacking import missing
 from wheelchair_fmu.campaign.strokes import begun, phase
+from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.estimation.fit import Fit
 from wheelchair_fmu.inference.evidence.disturbance import Strength, strength
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
+from wheelchair_fmu.inference.residual.panel import against
 from wheelchair_fmu.inference.residual.unexplained import CONSTANT, Missing, Order, Unexplained, _lone, unexplained
+from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
 
 from .forces import T_R, B, ridden, wandering
@@ -54,10 +58,41 @@ def test_what_a_force_goes_with_is_told(sample, forces, of, by):
     assert any(w.startswith(f"The missing {of} ") for w in found.words)
 
 
+def test_the_course_of_what_is_ordered_is_the_law_that_was_hidden(sample):
+    """Shrunk to nothing by no more than a third, as each moment's readings tell it."""
+    found = left_of(ridden(sample, np.random.default_rng(1), spring)).orders[0].panel
+    assert (found.variable, found.unit) == ("mean caster angle", "rad")
+    slope, level = np.polyfit(found.knots, found.estimate, 1, w=1 / found.se)
+    assert -2.1 < slope < -1.3 and abs(level) < 0.1
+    assert np.all(np.abs(found.estimate - np.polyval((slope, level), found.knots)) < 4 * found.se + 0.05)
+
+
+def test_a_course_has_standard_errors_by_how_far_runs_have_it_apart():
+    rng, runs = np.random.default_rng(2), 400
+    by, apart = [rng.uniform(-1, 1, 60) for _ in range(runs)], rng.normal(0, 0.5, runs)
+    found = against("speed", "m/s", by, [3 * x + a for x, a in zip(by, apart, strict=True)])
+    assert found.estimate == pytest.approx(3 * found.knots, abs=0.1)
+    assert found.se == pytest.approx(0.5 / np.sqrt(runs), rel=0.2)
+    alone = against("speed", "m/s", by[:1], [np.where(by[0] > 0, 3 * by[0], np.nan)])
+    assert np.isnan(alone.se).all() and (alone.knots > 0).all() and np.isfinite(alone.estimate).all()
+
+
 def test_what_swings_once_in_each_stroke_is_the_riders_body(sample):
     found = left_of(ridden(sample, np.random.default_rng(1), swung))
     assert found.after.body > 0.2 and found.after.along < 0.2 and found.orders == ()
     assert "a swing of the rider's body of " in found.words[0]
+
+
+def test_what_orders_a_force_is_what_a_diagnosis_has_missing(sample):
+    """For figures, also on the page: no term of any kind comes back with every turn of a wheel."""
+    few = {effect: bundled()[effect] for effect in ("rolling_resistance_asymmetry", "aerodynamic_drag")}
+    found = diagnose(ridden(sample, np.random.default_rng(1), lumpy), Variant(catalogue=few))
+    told = missing(found)
+    assert found.verdict == "outside" and told["words"] == "force along the chair" and told["unit"] == "N" and told["ordered"]
+    course = told["panels"][0]
+    assert course["variable"] == "left wheel's angle" and min(course["knots"]) > 0 and max(course["knots"]) < 2 * np.pi
+    # Counted from a run's first row, less what has turned by its second.
+    np.testing.assert_allclose(course["estimate"], 4 * np.cos(course["knots"]), atol=1.2)
 
 
 def test_a_hand_on_the_rim_is_told_by_run_and_time(sample):
@@ -68,12 +103,17 @@ def test_a_hand_on_the_rim_is_told_by_run_and_time(sample):
     found = left_of(ridden(sample, np.random.default_rng(2), hand))
     assert {o.by for o in found.orders} == {"run"}
     assert all("is in slalom-slow from 2." in o.words or "is in slalom-slow from 3." in o.words for o in found.orders)
+    for o, size in ((o, {"force": -12.0, "moment": 1.5}[o.of]) for o in found.orders):
+        assert o.panel.variable == "time in slalom-slow" and len(o.panel.knots) <= 60
+        held = (o.panel.knots > 3.6) & (o.panel.knots < 4.0)
+        assert np.mean(o.panel.estimate[held]) == pytest.approx(size, rel=0.35)
+        assert np.abs(o.panel.estimate[o.panel.knots > 5.5]).max() < 0.35 * abs(size)
 
 
 def test_a_force_that_is_known_for_moments_only_is_not_said_to_be_in_one_run():
     """Where readings hardly tell it, it is not asked for; all of the little that is known lies in some part of some run."""
     time, rng = np.arange(0.0, 12.0, 0.02), np.random.default_rng(3)
-    found = [Missing(name, time, {"force": wandering(rng, time, 2.0)}, {}) for name in "abcd"]
+    found = [Missing(name, time, {"force": wandering(rng, time, 2.0)}, {"force": 0 * time}) for name in "abcd"]
     whole = [m.values["force"] for m in found]
     hit = [v + 20.0 * ((time > 5) & (time < 6)) * (i == 1) for i, v in enumerate(whole)]
     glimpsed = [np.where((time > 5) & (time < 7) & (i == 1), v, np.nan) for i, v in enumerate(whole)]

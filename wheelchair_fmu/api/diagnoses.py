@@ -301,9 +301,10 @@ class Diagnosis:
         return estimates_figure(rows[:LIKELIEST])
 
     def plot_missing(self) -> Figure:
-        """What is missing, as the data would have it, against speed, yaw rate, heading, push and caster angle.
+        """What is missing, as the data would have it, against speed, yaw rate, heading, push and caster angle; where no term is
+        proposed, the force that nobody recorded, against what orders it.
 
-        Raises Failure unless the verdict is "outside" with a proposal.
+        Raises Failure unless the verdict is "outside" with one of these.
 
         >>> found.plot_missing()
         Traceback (most recent call last):

@@ -163,7 +163,7 @@ def _ranking(content: dict[str, Any], own: Container[str]) -> Table:
 
 def _files(face: diagnoses.Diagnosis, d: Diagnosis, folder: Path) -> list[Path]:
     figures = {"staircase": face.plot_staircase(), "estimates": face.plot_estimates()}
-    if d.proposal:
+    if face.as_dict()["missing"]:
         figures["missing"] = face.plot_missing()
     files = [face.save(folder / f"estimates{ending}") for ending in (".csv", ".tex")]
     for name, figure in figures.items():

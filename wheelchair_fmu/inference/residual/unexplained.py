@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from ..evidence.evidence import Evidence, RunEvidence
 from ..evidence.likelihood import Likelihood
 from ..evidence.noise_model import NoiseModel, pushes_of
 from ..parallel import parallel_map
+from .panel import Panel, against, in_run
 
 STROKE = "stroke"
 BINS = 8  # of a variable, alike in how much was recorded in each
@@ -57,6 +58,7 @@ class Order:
     by: str
     share: float
     words: str
+    panel: Panel | None = None
 
     def as_json(self) -> dict[str, Any]:
         return {"of": self.of, "by": self.by, "share": self.share, "words": self.words}
@@ -164,15 +166,26 @@ def orders(
             continue
         lone = _lone(of, found, values)
         shares = _shares(going, values)
-        ordered = (Order(of, name, share, _words(of, name, share)) for name, share in shares.items() if share > SHARE)
+        ordered = (
+            Order(of, name, share, _words(of, name, share), _panel(name, going, values))
+            for name, share in shares.items()
+            if share > SHARE
+        )
         out += [lone] if lone else ordered
     return sorted(out, key=lambda o: -o.share)
 
 
 def _words(of: str, name: str, share: float) -> str:
     return (
-        f"the missing {of} {VARIABLES[name][0]}: this foretells {share:.0%} of its mean square in runs it was not learnt from"
+        f"the missing {of} {VARIABLES[name].does}: this foretells {share:.0%} of its mean square in runs it was not learnt from"
     )
+
+
+def _panel(name: str, going: Sequence[Mapping[str, np.ndarray]], values: Sequence[np.ndarray]) -> Panel | None:
+    """A force against a variable; none of one that stays the same."""
+    variable = VARIABLES[name]
+    by = [g[name] % variable.period if variable.period else g[name] for g in going]
+    return against(variable.words or name, variable.unit, by, values) if variable.unit else None
 
 
 def _shares(going: Sequence[Mapping[str, np.ndarray]], values: Sequence[np.ndarray]) -> dict[str, float]:
@@ -180,7 +193,7 @@ def _shares(going: Sequence[Mapping[str, np.ndarray]], values: Sequence[np.ndarr
     constant's own. None where one run has no others to learn from."""
     if len(going) < 2:
         return {}
-    left = {name: _left([g[name] for g in going], values, basis) for name, (_, basis) in VARIABLES.items()}
+    left = {name: _left([g[name] for g in going], values, basis) for name, (*_, basis) in VARIABLES.items()}
     whole = float(sum(np.nansum(v**2) for v in values))
     constant = min(left[CONSTANT], whole)
     return {name: 1 - it / (whole if name == CONSTANT else constant) for name, it in left.items()}
@@ -218,7 +231,7 @@ def _lone(of: str, found: Sequence[Missing], values: Sequence[np.ndarray]) -> Or
         return None
     share, m, begins, ends = best[0] / whole, best[1], best[2], best[3]
     words = f"{share:.0%} of the missing {of} is in {m.run} from {begins:.1f} to {ends:.1f} s: something happened there"
-    return Order(of, "run", share, words)
+    return Order(of, "run", share, words, in_run(m.run, m.time, m.values[of], m.sd[of], begins, ends))
 
 
 def _going_on(e: RunEvidence, results: Sequence[str], radius: float) -> dict[str, np.ndarray]:
@@ -270,15 +283,33 @@ def _same(x: np.ndarray, edges: np.ndarray) -> np.ndarray:
 CONSTANT = "constant"
 
 
-VARIABLES: dict[str, tuple[str, Basis]] = {
-    CONSTANT: ("stays the same throughout", _same),
-    "speed": ("goes with the speed", _bins),
-    "yaw rate": ("goes with the yaw rate", _bins),
-    "heading": ("goes with the heading", _bins),
-    "push": ("goes with the push", _bins),
-    STROKE: ("is locked to the stroke, as that of a body is that moves and was not recorded", _strokes),
-    "caster angle": ("goes with the casters' angle", _bins),
-    "time": ("grows or fades in the course of a run", _course),
-    "left wheel's angle": ("comes back with every turn of the left wheel", _turns),
-    "right wheel's angle": ("comes back with every turn of the right wheel", _turns),
+class Variable(NamedTuple):
+    """What may order a force: what such a force `does`, its unit, its name where the key is none, after how much it comes back,
+    and the functions of it that are learnt."""
+
+    does: str
+    unit: str
+    words: str
+    period: float
+    basis: Basis
+
+
+TURN = 2 * np.pi
+VARIABLES = {
+    CONSTANT: Variable("stays the same throughout", "", "", 0.0, _same),
+    "speed": Variable("goes with the speed", "m/s", "", 0.0, _bins),
+    "yaw rate": Variable("goes with the yaw rate", "rad/s", "", 0.0, _bins),
+    "heading": Variable("goes with the heading", "rad", "", 0.0, _bins),
+    "push": Variable("goes with the push", "N", "push of both hands", 0.0, _bins),
+    STROKE: Variable(
+        "is locked to the stroke, as that of a body is that moves and was not recorded",
+        "1",
+        "share of a stroke that has passed",
+        0.0,
+        _strokes,
+    ),
+    "caster angle": Variable("goes with the casters' angle", "rad", "mean caster angle", 0.0, _bins),
+    "time": Variable("grows or fades in the course of a run", "s", "", 0.0, _course),
+    "left wheel's angle": Variable("comes back with every turn of the left wheel", "rad", "", TURN, _turns),
+    "right wheel's angle": Variable("comes back with every turn of the right wheel", "rad", "", TURN, _turns),
 }

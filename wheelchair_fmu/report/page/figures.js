@@ -180,7 +180,7 @@ export class Figures {
     return {
       draw: (width, look) => panels(width, look, all, unitText(missing.unit)),
       columns: () => ({ variable: all.flatMap((p) => p.xs.map(() => p.label)), at: all.flatMap((p) => p.xs), [`missing [${missing.unit}]`]: all.flatMap((p) => p.ys), se: all.flatMap((p) => p.ses) }),
-      caption: () => `${capital(missing.words)} as the runs would have it at the motion they had, a free function of one variable after another, with its 95 % band, as far as the runs tell it. A line that leaves zero shows what it goes with.${farthest}`,
+      caption: () => `${capital(missing.words)} ${missing.ordered ? "that nobody recorded, as all readings of the fitted runs have it, beside what it goes with, with its 95 % band." : "as the runs would have it at the motion they had, a free function of one variable after another, with its 95 % band, as far as the runs tell it. A line that leaves zero shows what it goes with."}${farthest}`,
     };
   }
 
