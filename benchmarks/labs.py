@@ -46,6 +46,7 @@ CASTERS = {"--caster-trail": 0.05, "--wheel-inertia": 0.12}  # which all protoco
 AT = {"lab-01": "[0.09, 0.04]", "lab-02": "[-0.22, 0.0]"}
 GRAVITY = 9.81
 OF_THE_BODY = re.compile(r"^\[rider\]\n(?:.+\n)*|, sternum = [^}]*(?= \})", re.MULTILINE)  # lines and words of a campaign
+LOADS = ("longitudinal_load_transfer", "lateral_load_transfer")  # by the height of the CM
 BODY, BODY_MOVES = "trunk_motion", "rider.force"
 # what a simulation may know of the rider's body, by its name in the answers, where all but the floor is known
 BODIES = {"true_rider": "with the body's motion known", "law_only_rider": "by a law of it"}
@@ -100,6 +101,7 @@ def truths(hidden: Mapping[str, Any], spinning: bool = False) -> dict[str, float
     found |= {"tyre.C_lambda": hidden["C_lambda"], "chair.m": hidden["m"] + spin}
     found |= {"chair.I_z": hidden["I_z"] + spin * hidden["t_r"] ** 2 / 4}
     found |= {"effect.caster_trail.c": hidden["caster_trail"], "effect.caster_friction.M": hidden["caster_friction"]}
+    found |= {f"effect.{effect}.h": hidden["h_cm"] for effect in LOADS if hidden.get("h_cm")}
     return found | {"effect.pivot_torque.M": hidden["turn_slip"]["M_p"]}
 
 
@@ -164,14 +166,14 @@ def row(answer: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 def unfair(told: Mapping[str, Any], answer: Mapping[str, Any], filmed: bool) -> str:
     """What is wrong with the names of a diagnosis: one that nothing hidden bears, or none of what is missing; else nothing.
 
-    Casters trail and stick in every lab, and a patch that is turned has several laws. A body whose motion was recorded is in
-    the model as it moved, and is not missing.
+    Casters trail and stick in every lab, a CM that is somewhere above the floor loads wheels, and a patch that is turned has
+    several laws. A body whose motion was recorded is in the model as it moved, and is not missing.
     """
     hidden = answer["verdict"]
     named = {*told["effects"], *(e for tie in told["ties"] for e in tie)}
     true = {*hidden["missing"], *hidden.get("also", ())} - ({BODY} if filmed else set())
     true |= {*TURNS_HARD} if answer["hidden"]["turn_slip"]["M_p"] else set()
-    false = named - true - {*hidden.get("small", ()), *SLIGHT}
+    false = named - true - {*hidden.get("small", ()), *SLIGHT, *(LOADS if answer["hidden"].get("h_cm") else ())}
     if false:
         return f"{', '.join(sorted(false))} named, which is not there"
     return "" if not true or named & true else f"none of {', '.join(sorted(true))} named"
