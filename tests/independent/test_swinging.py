@@ -18,6 +18,7 @@ from wheelchair_fmu.inference.evidence.initial_state import CASTERS
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.models.factory import CALIBRATED, ModelFactory
 from wheelchair_fmu.inference.models.models import Models
+from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.model.wheelchair import Choice
 
@@ -93,7 +94,8 @@ def test_casters_left_turned_round_are_found_where_nobody_filmed_them(tmp_path, 
 def test_a_diagnosis_tells_how_casters_stood_that_nobody_filmed(tmp_path):
     turned = (0.7, 0.4)
     campaign = read(make(tmp_path / "turned", {}, manoeuvres=[SETTING_OFF], seed=3, turned=turned, chair=AT_PATCHES))
-    began = final(diagnose(campaign, CHAIR), {})["runs"]["setting-off"]["start"]
+    few = replace(CHAIR, catalogue={effect: bundled()[effect] for effect in ("rolling_resistance_asymmetry", "gyro_bias")})
+    began = final(diagnose(campaign, few), {})["runs"]["setting-off"]["start"]
     told = [began[name] for name in CASTERS]
     assert sum(one["value"] for one in told) == pytest.approx(sum(turned), abs=0.1)
     assert all(0 < one["se"] < 0.3 and one["unit"] == "rad" for one in told)  # less unsure than where nobody looked

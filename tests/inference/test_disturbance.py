@@ -178,7 +178,7 @@ def test_a_run_that_is_led_ends_on_the_same_path_wherever_it_begins(sample):
     assert first.summary().rms == pytest.approx(first.rms, rel=1e-9), "what is kept of a run is judged as the run was"
 
 
-@pytest.mark.parametrize("moment", [0.3, 2.0])
+@pytest.mark.parametrize("moment", [pytest.param(0.3, marks=pytest.mark.nightly), 2.0])
 def test_values_among_unrecorded_forces_are_found_without_bias(sample, moment):
     """From a seventh off. Slopes that had the path's forces in them leaned by two standard errors in the mass, and where the
     moment is large by sixty in the yaw inertia."""

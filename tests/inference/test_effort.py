@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import fields
 
+import pytest
+
 from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.policy import USUAL, Effort, SearchPolicy
 
@@ -19,6 +21,7 @@ def test_every_number_has_its_reason_and_another_value_to_try():
         assert low < policy.default < high
 
 
+@pytest.mark.nightly
 def test_a_search_that_spares_no_work_finds_the_same(sample):
     usual, thorough = diagnose(sample), diagnose(sample, effort=Effort.thorough())
     assert (thorough.verdict, thorough.effects, thorough.ties) == (usual.verdict, usual.effects, usual.ties)

@@ -412,8 +412,9 @@ def told_of_a_start(noise_of_it: np.ndarray, true: float) -> tuple[float, float]
     """What is told of a run's first speed, to be read in waves beside this noise (n,), which a model takes for white."""
     n, known = len(noise_of_it), KNOWN
     waves = waves_of(n)
-    size, axes = np.linalg.eigh(np.eye(n) + known**2 * np.outer(waves, waves))
-    r, s = ((axes / np.sqrt(size)) @ (axes.T @ what) for what in (true * waves + noise_of_it, waves))
+    power = float(waves @ waves)
+    less = (1 - (1 + known**2 * power) ** -0.5) * waves / power  # of the inverse square root of I + known² waves wavesᵀ
+    r, s = (what - less * float(waves @ what) for what in (true * waves + noise_of_it, waves))
     (e,) = evidence([r[:, None]], [np.zeros((n, 1, 0))], ()).runs
     e = replace(e, start=dict.fromkeys(START, 0.0))
     names = list(e.uncertain)
