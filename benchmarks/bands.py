@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from wheelchair_fmu.inference.decision.verdict import Diagnosis
+from wheelchair_fmu.inference.decision.diagnosis import Diagnosis
 from wheelchair_fmu.inference.estimation.statistics import sandwich
 from wheelchair_fmu.inference.evidence.evidence import RunEvidence
 

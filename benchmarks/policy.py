@@ -16,7 +16,8 @@ from rich.progress import track
 from rich.table import Table
 
 from wheelchair_fmu.inference.decision.decide import decide
-from wheelchair_fmu.inference.decision.verdict import Diagnosis, diagnose
+from wheelchair_fmu.inference.decision.diagnosis import Diagnosis
+from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.policy import DEFAULT, RANGES, SearchPolicy
 from wheelchair_fmu.inference.search.rounds import Round
 from wheelchair_fmu.inference.search.ties import tied

@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from wheelchair_fmu.campaign import Campaign, Clock, Run, covered, read
-from wheelchair_fmu.inference.decision.verdict import Diagnosis, diagnose
+from wheelchair_fmu.inference.decision.diagnosis import Diagnosis
+from wheelchair_fmu.inference.decision.verdict import diagnose
 
 SAMPLE = Path(__file__).resolve().parents[1] / "examples" / "sample-campaign"
 RUNS = ("coast-down", "straight-strokes", "steady-right", "slalom-slow", "slalom-quick", "random-steps")

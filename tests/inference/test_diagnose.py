@@ -16,7 +16,8 @@ from wheelchair_fmu.handling.experiments import experiments
 from wheelchair_fmu.inference.decision.among_forces import FORCES
 from wheelchair_fmu.inference.decision.bootstrap import bootstrap
 from wheelchair_fmu.inference.decision.decide import decide
-from wheelchair_fmu.inference.decision.verdict import Diagnosis, diagnose
+from wheelchair_fmu.inference.decision.diagnosis import Diagnosis
+from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.estimation.interval import half_width
 from wheelchair_fmu.inference.estimation.statistics import correlation_time, sandwich
 from wheelchair_fmu.inference.explain.ranking import as_json

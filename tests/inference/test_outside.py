@@ -14,7 +14,8 @@ from tests.inference.conftest import measured
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.cli.main import app
 from wheelchair_fmu.contracts.own import load
-from wheelchair_fmu.inference.decision.verdict import Diagnosis, diagnose
+from wheelchair_fmu.inference.decision.diagnosis import Diagnosis
+from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.model.generic import library, terms
 
 

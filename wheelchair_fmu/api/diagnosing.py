@@ -12,8 +12,9 @@ from threadpoolctl import threadpool_limits
 
 from ..campaign import CHANNELS, Campaign
 from ..handling.experiments import experiments
+from ..inference.decision.diagnosis import Diagnosis
 from ..inference.decision.final import final
-from ..inference.decision.verdict import Diagnosis, diagnose
+from ..inference.decision.verdict import diagnose
 from ..inference.explain.story import story
 from ..model.generic import library
 from ..model.variant import Variant

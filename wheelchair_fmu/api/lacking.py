@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..inference.decision.verdict import Diagnosis
+from ..inference.decision.diagnosis import Diagnosis
 from ..inference.estimation.statistics import finite
 from ..inference.explain.profile import profiles as estimate_profiles
 from ..model.generic import VARIABLES, profiles, terms

@@ -15,7 +15,7 @@ from ..api.diagnosing import searched
 from ..campaign import windows
 from ..inference.decision.bootstrap import Bootstrap, bootstrap
 from ..inference.decision.decide import insufficient
-from ..inference.decision.verdict import Diagnosis
+from ..inference.decision.diagnosis import Diagnosis
 from ..model.effects import bundled
 from ..model.generic import terms, told_at
 from ..report.saving import save

@@ -9,7 +9,7 @@ import pandas as pd
 import pyarrow as pa
 
 from ..chunks import ERROR
-from ..inference.decision.verdict import Diagnosis
+from ..inference.decision.diagnosis import Diagnosis
 from ..inference.estimation.statistics import finite
 from ..inference.explain.ranking import ranking
 from ..model.variant import Variant

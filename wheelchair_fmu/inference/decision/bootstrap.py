@@ -15,7 +15,7 @@ from ..estimation.fit import Fit
 from ..estimation.statistics import decisive, difference_blocks
 from ..evidence.evidence import Evidence, blocks_of
 from ..search.rounds import Round
-from .verdict import Diagnosis
+from .diagnosis import Diagnosis
 
 INTERVAL = (0.025, 0.975)
 

@@ -16,7 +16,7 @@ from ..estimation.own_constant import own_constant
 from ..estimation.statistics import finite, sandwich
 from ..evidence.evidence import Evidence, RunEvidence
 from ..evidence.likelihood import Likelihood
-from .verdict import Diagnosis
+from .diagnosis import Diagnosis
 
 BY_PROFILE, BY_ERRORS = "profile", "errors"  # how an interval was found
 

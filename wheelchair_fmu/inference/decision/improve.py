@@ -20,8 +20,8 @@ from ..search.beginning import begin
 from ..search.refitting import candidate
 from ..search.screen import screen
 from ..search.selection import selection
+from .diagnosis import Diagnosis
 from .foretold import remarks
-from .verdict import Diagnosis
 
 
 @dataclass(frozen=True)

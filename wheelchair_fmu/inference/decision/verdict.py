@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from itertools import chain
 from typing import Any, NamedTuple
 
-import numpy as np
 from threadpoolctl import threadpool_limits
 
 from ...campaign import Campaign, windows
@@ -17,123 +15,33 @@ from ...errors import SimulationError
 from ...model.stage import Effect
 from ...model.variant import Variant
 from ..estimation.calibration import Calibrated, calibration, doubts, of_the_body
-from ..estimation.fit import Fit
-from ..estimation.interval import interval_by_errors, profile_interval, widened
-from ..estimation.score import Score
 from ..estimation.statistics import correlation_time
-from ..estimation.unnamed import allowance
 from ..evidence.disturbance import Strength
-from ..evidence.likelihood import MASS
 from ..evidence.limits import beyond
-from ..models.factory import CALIBRATED, MEASURED, ModelFactory
-from ..models.hypothesis import Model
+from ..models.factory import CALIBRATED, ModelFactory
 from ..models.models import Models, quiet
 from ..policy import DEFAULT, USUAL, Effort, SearchPolicy
 from ..preflight.slipping import slipped
-from ..preflight.timing import Late, clocks, unlike_the_others
+from ..preflight.timing import clocks, unlike_the_others
 from ..residual.lead import lead
 from ..residual.staircase import Step
 from ..residual.unexplained import Unexplained
 from ..search.beginning import Beginning, Clocks, begin, late_by_slopes
 from ..search.candidate import Candidate
-from ..search.probability import beliefs, shared
 from ..search.relief import reliefs
-from ..search.rounds import Belief, Round
-from ..search.screen import screen
+from ..search.rounds import Round
 from ..search.selection import Selection, selection
 from ..search.ties import grouped, probable, tied
-from .ahead import Ahead, ahead, run_to_fit, which_to_fit
+from .ahead import Ahead, ahead, which_to_fit
 from .among_forces import led, left, needed, staircase
-from .decide import Facts, Larger, decide, instead_of_small, slight
+from .decide import Facts, decide, instead_of_small, slight
+from .diagnosis import Diagnosis, deciding
 from .experiment import Experiment, reveal, separate
 from .foretold import remarks
+from .intervals import allowance_of, intervals_of, intervals_of_rivals
 from .leftover import leftover, prepare, settled
-from .one_run import Resting, resting
-
-
-@dataclass(frozen=True)
-class Diagnosis:
-    """Everything `diagnose` says.
-
-    `included` are the effects of the model in the end, of which the variant came with `already`; `rounds` those of the search,
-    `beside` those that judge an effect beside all others, where it does not stand without; `proposal` is the generic term of
-    "outside", `calibration` what became of given values, `intervals` are by the profile of the likelihood, or by
-    standard errors where forces that nobody recorded lead the runs, and as much wider as effects that nobody named may move an
-    estimate, by `allowance`, a standard deviation; of what is tied with an effect, in the model that has it instead. `models`
-    are those that were searched, `retimed` and `clocks` what is known of time, and `heard` sentences on columns and clocks.
-    """
-
-    campaign: str
-    verdict: str
-    effects: tuple[str, ...]
-    included: tuple[str, ...]
-    already: tuple[str, ...]
-    ties: tuple[tuple[str, ...], ...]
-    ladder: tuple[Step, ...]
-    rounds: tuple[Round, ...]
-    beside: tuple[Round, ...]
-    leftover: Round | None
-    proposal: Candidate | None
-    final: Fit
-    calibration: tuple[Calibrated, ...]
-    intervals: Mapping[str, tuple[float, float]]
-    allowance: Mapping[str, float]
-    models: Models
-    retimed: Mapping[str, Late]
-    clocks: Clocks
-    heard: tuple[str, ...]
-    notes: tuple[str, ...]
-    next_experiment: dict[str, Any] | None
-    seconds: float = 0.0
-    unexplained: Unexplained | None = None
-    seen: float | None = None  # share of the catalogue's causes that would have been seen, where nothing was
-    ahead: Ahead = Ahead()
-    facts: Facts | None = None  # that the verdict follows from
-
-    @property
-    def top(self) -> Fit:
-        """The fit at the top of the staircase: the proposal's, where there is one."""
-        return self.proposal.fit if self.proposal else self.final
-
-    @cached_property
-    def beliefs(self) -> dict[str, Belief]:
-        """How probable it is that each effect is there, and larger than δ."""
-        found = {e: self._decided(e) for e in self.included if e not in self.already}
-        return beliefs(found, self.rounds[-1], _one_sided(self.models.factory))
-
-    @property
-    def odds(self) -> tuple[dict[str, float], ...]:
-        """Of each group of effects that are tied, the probability that it is each of them."""
-        return tuple(shared(group, self._decided(group[0])) for group in self.ties)
-
-    @property
-    def to_fit(self) -> str | None:
-        """The held-out run to fit as well, where only such runs show an error."""
-        return run_to_fit(self.ladder, self.ahead, self.models.policy)
-
-    @property
-    def larger(self) -> tuple[Larger, ...]:
-        """What would be large instead of what was found to be small, as far as data cannot tell them apart."""
-        return instead_of_small(self.rounds[0]) if self.verdict == "small" else ()
-
-    @cached_property
-    def rests_on(self) -> tuple[Resting, ...]:
-        """What is named for the sake of a single run."""
-        if self.verdict not in ("missing", "tie", "outside") or self.proposal:
-            return ()
-        decided = {e: self._decided(e) for e in self.effects if e in self.included}
-        return resting(grouped([*decided], self.ties), decided, self.included, self.models.policy)
-
-    def _decided(self, effect: str) -> Round:
-        """The round that judges an effect of the final model, beside all others of it where there is such a round."""
-        return _deciding(effect, self.included, self.beside, self.rounds)
-
-
-def _deciding(effect: str, included: Sequence[str], beside: Sequence[Round], rounds: Sequence[Round]) -> Round:
-    """The round that judges an effect of a model, beside all others of it where there is such a round."""
-    again = (r for r in beside if {*r.effects, effect} == set(included) and effect not in r.effects)
-    first = (r for r in reversed(rounds) if effect not in r.effects and any(c.effect == effect for c in r.candidates))
-    return next(again, None) or next(first)
+from .strain import of_another_chair, strained_values
+from .unseen import likely_of, powers_of, unsure
 
 
 @threadpool_limits.wrap(limits=1)  # runs are what is shared among the cores; BLAS threads would only wait for one another
@@ -255,15 +163,16 @@ def _concluded(
         included, proposal, ladder = settled(found, generic, proposal)
         stepped(ladder)
     beside = {e: r for e, r in found.beside.items() if r} if proposal is None else {}
-    decided = {e: _deciding(e, included, tuple(beside.values()), rounds) for e in found.added if e in included}
+    decided = {e: deciding(e, included, tuple(beside.values()), rounds) for e in found.added if e in included}
     judged = {e: decided[e] for e in found.named() if e in decided}
     effects = tuple(e for e, r in judged.items() if probable(r, e))  # what others made needless later only helps
     groups = [(group, r) for e, r in beside.items() if e in effects and len(group := tied(r, e)) > 1]
     ties = tuple(group for group, _ in groups)
     values = calibration(models.likelihood(included), proposal.fit if proposal else base)
-    strained = _strained(models, values) if proposal else _of_another_chair(found, _strained(models, values))
+    bent = strained_values(models, values)
+    strained = bent if proposal else of_another_chair(found, bent)
     held = ahead(models, found.top, found.ladder, bool(effects)) if proposal is None else Ahead()
-    likely = {} if effects else _likely(models.factory, decided, rounds[-1])
+    likely = {} if effects else likely_of(models.factory, decided, rounds[-1])
     facts = Facts(
         effects=effects,
         ties=ties,
@@ -282,12 +191,14 @@ def _concluded(
     )
     verdict = decide(facts, models.policy)
     if verdict == "cannot_see":  # or adequate, if enough would have been seen, which nobody needs to know before
-        facts = replace(facts, powers=_powers(models, rounds[0]))
+        facts = replace(facts, powers=powers_of(models, rounds[0]))
         verdict = decide(facts, models.policy)
     if verdict == "outside" and ladder[-1].heldout > ladder[1].heldout:
         effects, ties, groups = (), (), []  # what foretells runs that were held out worse helps nobody
     heard = (*heard, *search.heard)
-    allowed = _allowance(found)
+    allowed, intervals = allowance_of(found), dict[str, tuple[float, float]]()
+    if proposal is None:
+        intervals = intervals_of(models, included, effects, base, allowed) | intervals_of_rivals(found, groups)
     return Diagnosis(
         campaign=models.campaign.name,
         verdict=verdict,
@@ -302,7 +213,7 @@ def _concluded(
         proposal=proposal,
         final=base,
         calibration=tuple(values),
-        intervals=_intervals(models, included, effects, base, allowed) | _of_rivals(found, groups) if proposal is None else {},
+        intervals=intervals,
         allowance=allowed,
         models=models,
         retimed=beginning.retimed,
@@ -368,71 +279,8 @@ def _notes(
     doubtful = (*doubts(values), *of_the_body(values), *(reliefs(rounds[-1], values) if proposal is None else ()))
     beyond_limits = beyond(models.likelihood(found.effects), top.fit.evidence)
     large = tuple(other.words for other in instead_of_small(rounds[0])) if verdict == "small" else ()
-    unsure = tuple(_unsure(e, p) for e, p in likely.items()) if verdict == "cannot_see" else ()
+    unsure = tuple(unsure(e, p) for e, p in likely.items()) if verdict == "cannot_see" else ()
     return (*thinned, *heard, *odd, *models.setting.notes, *doubtful, *beyond_limits, *large, *unsure)
-
-
-def _likely(w: ModelFactory, decided: Mapping[str, Round], last: Round) -> dict[str, float]:
-    """The probability of effects that are more probably of a size of interest than not, though none is sure enough to be named:
-    of those that only help the model, by the round that decided on each, and of others beside it."""
-    return {e: b.large for e, b in beliefs(decided, last, _one_sided(w)).items() if b.large > 0.5}
-
-
-def _one_sided(w: ModelFactory) -> dict[str, np.ndarray]:
-    """By effect, which of its parameters (k,) may only be positive."""
-    return {e: w.one_sided(w.parameters(e)) for e in w.catalogue}
-
-
-def _unsure(effect: str, probability: float) -> str:
-    return (
-        f"{effect} is probably missing, with a size of interest ({probability:.2f}), but not surely enough to be named; "
-        "further runs would tell"
-    )
-
-
-def _allowance(found: Selection) -> dict[str, float]:
-    """By how much (a standard deviation, by name) the estimates of the last model may be off by causes that nobody named. Those
-    that a nuisance of the campaign stands for are allowed for by it. A model with as many effects as are put in was not
-    searched for more, so that it is screened for this."""
-    last = next((r for r in reversed(found.rounds) if r.effects == found.effects), None)
-    return _allowed(found.models, found.top, last.scores if last else [s.score for s in screen(found.models, found.top)])
-
-
-def _allowed(models: Models, model: Model, scores: Sequence[Score]) -> dict[str, float]:
-    """The same of any model, with the scores of what it lacks."""
-    causes = {e: record.cause for e, record in models.factory.catalogue.items()}
-    named = {causes[e] for e in model.effects}
-    others = [s for s in scores if causes[s.effect] not in named and s.effect not in models.doubles]
-    names = model.fit.names
-    covariance = allowance(others, causes, len(names), models.policy)
-    return dict(zip(names, map(float, np.sqrt(np.diag(covariance))), strict=True))
-
-
-def _intervals(
-    models: Models, included: Sequence[str], effects: Sequence[str], found: Fit, allowed: Mapping[str, float]
-) -> dict[str, tuple[float, float]]:
-    """Intervals of the parameters of the effects that were found."""
-    likelihood, names = models.likelihood(included), [n for e in effects for n in models.factory.parameters(e)]
-
-    def interval(name: str) -> tuple[float, float]:
-        more, record = allowed.get(name, 0.0), likelihood.records[name]
-        if models.factory.leads:  # no value was found by how likely the readings are
-            return interval_by_errors(found, found.names.index(name), more, record)
-        return widened(profile_interval(likelihood, found, name), found.values[name], more, record)
-
-    return {n: interval(n) for n in names if n in found.names}
-
-
-def _of_rivals(found: Selection, ties: Sequence[tuple[Sequence[str], Round]]) -> dict[str, tuple[float, float]]:
-    """Intervals of what is tied with an effect of the last model, each in the model that has it instead."""
-    models, intervals = found.models, dict[str, tuple[float, float]]()
-    for group, r in ties:
-        fits = {c.effect: c.fit for c in r.candidates}
-        for rival in (e for e in group if e not in found.effects):
-            model = models.model((*r.effects, rival), fits[rival].values)
-            allowed = _allowed(models, model, [s.score for s in screen(models, model)])
-            intervals |= _intervals(models, model.effects, (rival,), model.fit, allowed)
-    return intervals
 
 
 def _next(
@@ -455,30 +303,3 @@ def _next(
         weak = [s.effect for s in rounds[0].scores if s.power < models.policy.power]
         return reveal(models, rounds[0].fit, weak, experiments)
     return None
-
-
-def _strained(models: Models, values: Sequence[Calibrated]) -> list[str]:
-    """Calibrated values that a fit has bent as far as it may. A body that swings with the pushes, and that nobody recorded,
-    answers them as another mass would."""
-    swings = models.setting.noise_model.body > 0
-    return [v.record.name for v in values if v.beyond and not (swings and v.record.name == MASS)]
-
-
-def _of_another_chair(found: Selection, strained: Sequence[str]) -> Sequence[str]:
-    """Those of such values that the data insist on: no law is exact, and with effects that explain much, what held at its prior
-    would cost no more than their laws may get wrong proves nothing of the chair."""
-    models, fit = found.models, found.top.fit
-    allowed = models.policy.inexact**2 * (found.calibrated - fit.deviance)
-    if not strained or allowed <= 0 or models.factory.leads:
-        return strained
-    held = models.refit(found.effects, fit.values, without=frozenset(strained))
-    return strained if held.deviance - fit.deviance > allowed else ()
-
-
-def _powers(models: Models, first: Round) -> dict[str, float]:
-    """With which power each effect would have been seen if it were there, but for what mass and geometry could be instead
-    within what is known of them: in that case the model predicts as well without."""
-    weak = [s.effect for s in first.scores if s.power < models.policy.power]
-    exact = replace(first.fit, names=tuple(n for n in first.fit.names if n not in MEASURED))
-    again = screen(models, replace(first.model, fit=exact), weak) if weak else []
-    return {s.effect: s.power for s in (*first.scores, *(s.score for s in again))}

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..decision.verdict import Diagnosis
+from ..decision.diagnosis import Diagnosis
 from ..estimation.fit import Fit
 from ..estimation.interval import NORMAL
 from ..estimation.score import Score

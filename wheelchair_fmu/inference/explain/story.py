@@ -8,7 +8,7 @@ from typing import Any
 
 from ... import __version__
 from ...provenance import code_fingerprint
-from ..decision.verdict import Diagnosis
+from ..decision.diagnosis import Diagnosis
 from .ranking import as_json
 
 
