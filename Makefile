@@ -2,6 +2,8 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+# One more than there are cores, as tests wait for compilers and for threads of their own.
+WORKERS = $(shell $(BIN)/python -c 'import os; print(min((os.cpu_count() or 1) + 1, 8))')
 
 .PHONY: docs/report.png help setup demo docs site release test test-browser lint bench bench-large bench-diagnosis mutants importers matrix nightly clean
 .DEFAULT_GOAL := help
@@ -71,7 +73,7 @@ release: setup
 	.ci/release dist/release
 
 test: setup
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n $(WORKERS)
 
 test-browser: setup
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[browser]"
@@ -118,7 +120,7 @@ nightly: setup $(VENV)-importers/.ready
 	@echo "seeds: NIGHTLY_SEED=$(NIGHTLY_SEED), trials $(TRIALS)"
 	@failed=; \
 	NIGHTLY_SEED=$(NIGHTLY_SEED) IMPORTERS_PYTHON=$(CURDIR)/$(VENV)-importers/bin/python \
-		$(BIN)/python -m pytest -n 2 -m nightly --durations=30 || failed="$$failed tests"; \
+		$(BIN)/python -m pytest -n $(WORKERS) -m nightly --durations=30 || failed="$$failed tests"; \
 	$(BIN)/python -m benchmarks.diagnosis $(TRIALS) || failed="$$failed trials"; \
 	$(BIN)/python -m benchmarks.mutants --drawn --sample $(NIGHTLY_MUTANTS) --seed $(NIGHTLY_SEED) || failed="$$failed mutants"; \
 	if [ -n "$$failed" ]; then echo "failed:$$failed"; exit 1; fi

@@ -21,7 +21,8 @@ def test_a_patch_that_is_held_where_its_wheel_stands_is_named(noise, seed):
     assert "pivot_torque" not in named(nothing)
 
 
-@pytest.mark.parametrize("effect", [pytest.param("gyro_bias", marks=pytest.mark.nightly), "wheel_radius_error"])
+@pytest.mark.nightly
+@pytest.mark.parametrize("effect", ["gyro_bias", "wheel_radius_error"])
 def test_intervals_hold_what_was_hidden(effect):
     """Profile likelihood and block bootstrap, where both simulators mean the same by a parameter; seed 1 of the benchmark."""
     found = trial(Case("effect", (effect,), 3.0, seed=1), with_baselines=False)

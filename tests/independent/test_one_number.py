@@ -21,6 +21,7 @@ from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
 
 
+@pytest.mark.nightly
 def test_what_a_search_puts_in_has_the_errors_that_add_and_compare_say(tmp_path):
     """A trunk that moves leaves the pushes' noise smaller than without it. `compare` simulates with the FMU, to 1e-4."""
     campaign = read(make(tmp_path / "campaign", {"trunk_motion": usual("trunk_motion", 3.0)}, seed=5))

@@ -124,6 +124,7 @@ def test_given_values_that_are_a_little_off_are_no_effect(tmp_path, off):
         assert abs(values[name] - campaign.known[name]) < 0.6 * abs(off[name])
 
 
+@pytest.mark.nightly
 def test_turn_slip_that_geometry_hides_is_never_adequate(tmp_path):
     """In everyday turns another place of the CM does as well as patches that resist being turned. No tape is so far off, and
     what lets it back is named with its size."""

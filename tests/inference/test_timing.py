@@ -142,6 +142,7 @@ def test_what_only_the_final_model_tells_of_a_shift(sample, name, seconds, chair
     assert same_verdict(sample, name, seconds, chair) == pytest.approx(seconds, abs=0.01)
 
 
+@pytest.mark.nightly
 @among("stroke_motion", "push_force_delay", "rolling_resistance_asymmetry")
 def test_a_body_that_moves_with_each_stroke_is_no_clock(tmp_path, chair):
     """It is ahead of the hands, as pushes are that were recorded early; the runs without strokes have no share in it."""
