@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.inference.linear import evidence, least_squares, noise, signals, values
-from wheelchair_fmu.inference.decision.one_run import resting
+from wheelchair_fmu.inference.decision.one_run import _power, resting
 from wheelchair_fmu.inference.estimation.left_out import left_out
 from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.policy import DEFAULT
@@ -19,20 +19,19 @@ from wheelchair_fmu.inference.search.usual import Usual
 
 NAMES = ("known", "other", "effect")
 SD = np.array([0.5, 2.0, 1e6])
-TRUE, LARGE, DELTA = np.array([0.3, -0.5]), 6.0, 1.0
+TRUE, LARGE, DELTA = np.array([0.3, -0.5]), 9.0, 1.5
 RUNS = 5
 
 
 def measured(rng, slopes, sizes):
     """Readings of runs in which the effect has these `sizes`."""
-    return [
-        s @ np.append(TRUE, size) + noise(rng, s.shape[:2])
-        for s, size in zip(slopes, np.broadcast_to(sizes, RUNS), strict=True)
-    ]
+    each = np.broadcast_to(sizes, len(slopes))
+    return [s @ np.append(TRUE, size) + noise(rng, s.shape[:2]) for s, size in zip(slopes, each, strict=True)]
 
 
-def fits(y, slopes, runs=range(RUNS)):
-    """The model without the effect, and that with it, of some of the runs."""
+def fits(y, slopes, runs=None):
+    """The model without the effect, and that with it, of all or of some of the runs."""
+    runs = range(len(y)) if runs is None else runs
     y, slopes = [y[i] for i in runs], [slopes[i] for i in runs]
     base = least_squares(y, [s[..., :2] for s in slopes], NAMES[:2], prior_sd=SD[:2])
     return base, least_squares(y, slopes, NAMES, prior_sd=SD)
@@ -94,6 +93,35 @@ def test_what_other_runs_deny_rests_on_one():
     _, (rests,) = told(measured(rng, slopes, [0.0, 0.0, 0.0, LARGE, 0.0]), slopes)
     assert rests.run == "run 3" and rests.seen and rests.without < 0.5
     assert "by the other fitted runs, which would show it" in rests.words and "run 3" in rests.words
+
+
+def test_of_two_runs_one_may_be_what_all_rests_on_and_a_single_one_is_not():
+    """Of a single run nobody has to be told that all rests on it."""
+    rng = np.random.default_rng(9)
+    slopes = signals(rng, 2, 600, 3)
+    slopes[1][..., 2] = 1e-4 * slopes[1][..., 0]
+    y = measured(rng, slopes, LARGE)
+    _, (rests,) = told(y, slopes)
+    assert rests.run == "run 0" and not rests.seen
+    r, rests = told(y[:1], slopes[:1])
+    assert r.beliefs["effect"].there > 0.9 and rests == ()
+
+
+def test_the_others_would_show_an_effect_that_is_2_8_standard_errors_large_in_four_of_five():
+    """Of a test at the 5 % level (Cohen 1988)."""
+    rng = np.random.default_rng(11)
+    slopes = signals(rng, RUNS, 100, 3)
+    _, c = candidate(measured(rng, slopes, LARGE), slopes)
+    size, *_ = c.usual
+    barely = np.array([[(DELTA / 2.8) ** 2]])
+    assert _power(replace(c, usual=(size, barely / 9, barely))) == pytest.approx(0.80, abs=0.002)
+
+
+def test_what_is_not_there_rests_on_nothing():
+    rng = np.random.default_rng(10)
+    slopes = signals(rng, RUNS, 600, 3)
+    r, rests = told(measured(rng, slopes, 0.0), slopes)
+    assert r.beliefs["effect"].there < 0.1 and rests == ()
 
 
 def test_a_tie_rests_on_a_run_only_with_all_its_members():
