@@ -86,6 +86,20 @@ def test_the_ranking_tells_which_values_make_up_for_what_is_hidden_in_the_fit(sa
     assert next(iter(made("inflation_pressure", "dp"))) == "tyre.C_lambda"
 
 
+def test_what_makes_up_for_an_effect_is_of_the_model_that_it_was_scored_beside(sampled):
+    """A round that judges one of a group has the scores of the round that found the group, whose model has other values."""
+    fewer = replace(sampled.rounds[0].fit, names=("chair.m",), values={"chair.m": 80.0}, covariance=np.eye(1))
+    later = replace(sampled, rounds=tuple(replace(r, fit=fewer) for r in sampled.rounds))
+    assert as_json(later)["ranking"] == as_json(sampled)["ranking"]
+
+
+def test_what_a_nuisance_stands_for_is_scored_and_told_without_it(sample):
+    few = Variant(catalogue={effect: bundled()[effect] for effect in ("rolling_resistance_asymmetry", "gyro_bias")})
+    told = as_json(diagnose(replace(sample, nuisance=("yaw_rate",)), few))
+    (bias,) = (row["parameters"]["b"] for row in told["ranking"] if row["effect"] == "gyro_bias")
+    assert bias["made_up_by"] and all(m["unit"] and not m["name"].startswith("sensor") for m in bias["made_up_by"])
+
+
 def test_the_ranking_tells_the_last_model(sampled):
     row = as_json(sampled)["ranking"][0]
     assert row["parameters"]["D"]["estimate"] == sampled.final.values[DRAG]

@@ -279,8 +279,8 @@ def _notes(
     doubtful = (*doubts(values), *of_the_body(values), *(reliefs(rounds[-1], values) if proposal is None else ()))
     beyond_limits = beyond(models.likelihood(found.effects), top.fit.evidence)
     large = tuple(other.words for other in instead_of_small(rounds[0])) if verdict == "small" else ()
-    unsure = tuple(unsure(e, p) for e, p in likely.items()) if verdict == "cannot_see" else ()
-    return (*thinned, *heard, *odd, *models.setting.notes, *doubtful, *beyond_limits, *large, *unsure)
+    doubted = tuple(unsure(e, p) for e, p in likely.items()) if verdict == "cannot_see" else ()
+    return (*thinned, *heard, *odd, *models.setting.notes, *doubtful, *beyond_limits, *large, *doubted)
 
 
 def _next(

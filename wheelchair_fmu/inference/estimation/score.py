@@ -9,7 +9,7 @@ coloured residuals are not taken for evidence.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -40,18 +40,23 @@ class Score:
     signature: np.ndarray  # (N,) unit vector of the projected expected change
     delta: np.ndarray
     covariance: np.ndarray  # (k, k) of the estimate, in units of δ; where the data see nothing as large as BLIND
-    imitated: np.ndarray  # (m, k) by how much the calibrated directions make up for δ of it
+    imitated: np.ndarray  # (m, k) by how much the calibrated directions make up for δ of it,
+    by: tuple[str, ...] = ()  # whose names these are,
+    spread: np.ndarray = field(default_factory=lambda: np.zeros(0))  # and standard errors (m,)
 
 
 class Projector:
     """Takes the calibrated directions Z (N, m) off any columns (N, k). What is known of each beforehand counts as further
     readings, with slopes (m, m) and residuals (m,): a fit that has bent a value to imitate an effect is strained, and that
-    speaks for the effect."""
+    speaks for the effect. `names` are those of the directions, for whoever is told of them."""
 
-    def __init__(self, Z: np.ndarray, prior_slopes: np.ndarray, prior_rows: np.ndarray | None = None):
-        self.Z, self.slopes = Z, prior_slopes
+    def __init__(
+        self, Z: np.ndarray, prior_slopes: np.ndarray, prior_rows: np.ndarray | None = None, names: Sequence[str] = ()
+    ):
+        self.Z, self.slopes, self.names = Z, prior_slopes, tuple(names)
         self.rows = np.zeros(Z.shape[1]) if prior_rows is None else prior_rows
         self._inverse = inverse(Z.T @ Z + prior_slopes**2)
+        self.spread = np.sqrt(np.maximum(np.diag(self._inverse), 0.0))
 
     def __call__(self, X: np.ndarray) -> np.ndarray:
         """What is left of the columns in the readings (N, k)."""
@@ -130,7 +135,8 @@ def score(
     if not seen.any():
         nothing = np.zeros(len(delta))
         unknown, blind = np.full(len(delta), np.inf), BLIND * np.eye(len(delta))
-        return Score(effect, tuple(names), nothing, unknown, 1.0, 0.0, 0.05, collinearity, nothing[:0], delta, blind, imitated)
+        unseen = unknown, 1.0, 0.0, 0.05, collinearity, nothing[:0], delta, blind, imitated
+        return Score(effect, tuple(names), nothing, *unseen, off.names, off.spread)
     V = axes[:, seen]
     s_V, strained_V, I_V = s @ V, strained @ V, size[seen]
     U = s_V.T @ r + strained_V.T @ off.rows
@@ -164,4 +170,6 @@ def score(
         V @ _spread(evidence, s_V, strained_V, I_V, r - direction, off.rows - strained_V @ change) @ V.T
         + BLIND * (np.eye(len(delta)) - V @ V.T),
         imitated,
+        off.names,
+        off.spread,
     )

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from ..decision.diagnosis import Diagnosis
-from ..estimation.fit import Fit
 from ..estimation.interval import NORMAL
 from ..estimation.score import Score
 from ..estimation.statistics import cosines, estimates, finite
@@ -56,8 +55,7 @@ def as_json(d: Diagnosis) -> dict[str, Any]:
 def ranking(d: Diagnosis) -> list[dict[str, Any]]:
     """Every effect, the refitted first, as the round in which it did best saw it."""
     first = d.rounds[0]
-    scored = {s.effect: (s, r.fit) for r in (*d.rounds, first) for s in r.scores}
-    scores = {effect: s for effect, (s, _) in scored.items()}
+    scores = {s.effect: s for r in (*d.rounds, first) for s in r.scores}
     candidates: dict[str, tuple[Candidate, Round]] = {}
     for r in (*d.rounds, *d.beside):
         for c in r.candidates:
@@ -74,7 +72,7 @@ def ranking(d: Diagnosis) -> list[dict[str, Any]]:
     rivals = _rivals(first.scores)
     nobody: tuple[Candidate | None, Round] = (None, first)
     seen = {e: candidates.get(e, nobody) for e in order}
-    return [_row(d, *scored[e], *seen[e], rivals.get(e, [])) for e in order]
+    return [_row(d, scores[e], *seen[e], rivals.get(e, [])) for e in order]
 
 
 def groups(d: Diagnosis) -> list[dict[str, Any]]:
@@ -95,8 +93,7 @@ def groups(d: Diagnosis) -> list[dict[str, Any]]:
     ]
 
 
-def _row(d: Diagnosis, s: Score, beside: Fit, c: Candidate | None, r: Round, rivals: list[dict[str, Any]]) -> dict[str, Any]:
-    """An effect's row; its score was taken `beside` a fit."""
+def _row(d: Diagnosis, s: Score, c: Candidate | None, r: Round, rivals: list[dict[str, Any]]) -> dict[str, Any]:
     records = d.models.factory.records
     estimate, se = _estimate(d, s, c)
     parameters = {
@@ -105,7 +102,7 @@ def _row(d: Diagnosis, s: Score, beside: Fit, c: Candidate | None, r: Round, riv
             "se": finite(e),
             "unit": records[name].unit.name,
             "smallest_interesting": records[name].smallest_interesting,
-            "made_up_by": _made_up(d, beside, change),
+            "made_up_by": _made_up(d, s, change),
             **({"interval": list(d.intervals[name])} if name in d.intervals else {}),
         }
         for name, v, e, change in zip(s.names, estimate, se, s.imitated.T, strict=True)
@@ -129,12 +126,12 @@ def _row(d: Diagnosis, s: Score, beside: Fit, c: Candidate | None, r: Round, riv
     }
 
 
-def _made_up(d: Diagnosis, beside: Fit, change: np.ndarray) -> list[dict[str, Any]]:
+def _made_up(d: Diagnosis, s: Score, change: np.ndarray) -> list[dict[str, Any]]:
     """Fitted values that would make up for δ of a parameter, and by what change (m,): those that would be furthest out."""
-    records, spread = d.models.likelihood(d.included).records, np.sqrt(np.maximum(np.diag(beside.covariance), 0))
-    far = np.divide(abs(change), spread, out=np.zeros(len(change)), where=spread > 0)
+    records = {**d.models.factory.records, **d.models.likelihood(d.included).records}
+    far = np.divide(abs(change), s.spread, out=np.zeros(len(change)), where=s.spread > 0)
     most = [i for i in np.argsort(-far, kind="stable")[:MAKERS] if far[i] > 0]
-    return [{"name": n, "change": float(change[i]), "unit": records[n].unit.name} for i in most if (n := beside.names[i])]
+    return [{"name": n, "change": float(change[i]), "unit": records[n].unit.name} for i in most if (n := s.by[i])]
 
 
 def _cause(d: Diagnosis, effect: str) -> str | None:

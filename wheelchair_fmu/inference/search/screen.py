@@ -70,7 +70,7 @@ def projector(likelihood: Likelihood, base: Fit, here: Evidence) -> Projector:
     """Takes what calibration can imitate off any columns."""
     prior = prior_of(likelihood, base.names)
     rows = prior.rows(np.array([base.values[n] for n in base.names]))
-    return Projector(here.S[:, : len(base.names)], prior.slopes, rows)
+    return Projector(here.S[:, : len(base.names)], prior.slopes, rows, base.names)
 
 
 def at_prior_mean(models: Models, likelihood: Likelihood, base: Fit, least: float) -> list[dict[str, float]]:
