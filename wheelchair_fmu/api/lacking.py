@@ -2,35 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
-from ..inference.decision.diagnosis import Diagnosis
-from ..inference.estimation.statistics import finite
-from ..inference.explain.profile import profiles as estimate_profiles
-from ..model.generic import VARIABLES, profiles, terms
+import numpy as np
 
-FORCES = {"force": ("force along the chair", "N"), "moment": ("moment about the vertical", "N.m")}  # as generic terms have them
+from ..inference.decision.diagnosis import Diagnosis
+from ..inference.explain.profile import profiles as estimate_profiles
+from ..inference.residual.panel import Panel
+from ..model.generic import VARIABLES, Term, profiles, terms
+
+FORCES = {"force": "F_x", "moment": "M_z"}  # to what generic terms add that are such a force
 
 
 def missing(d: Diagnosis) -> dict[str, Any] | None:
     """The key `missing` of a diagnosis that proposes a term, or whose model lacks a force that something orders: the quantity
-    in words, its unit, and a panel for each variable {"variable", "unit", "knots", "estimate", "se"}, None where the data say
-    nothing."""
+    in words, its unit, whether it is `ordered`, and a panel for each variable {"variable", "unit", "knots", "estimate", "se"},
+    None where the data say nothing."""
     if d.proposal is None:
         return _ordered(d)
     term = terms()[d.proposal.effect]
     found = estimate_profiles(d.models, d.rounds[0].fit, d.rounds[0].effects, profiles(term))
     panels = [
-        {
-            "variable": words,
-            "unit": unit,
-            "knots": list(knots),
-            "estimate": [finite(v) for v in p.estimate],
-            "se": [finite(v) for v in p.se],
-        }
+        Panel(words, unit, np.array(knots), np.array(p.estimate), np.array(p.se))
         for p, (words, unit, _, knots) in zip(found, VARIABLES.values(), strict=True)
     ]
-    return {"words": term.noun.split(" ", 1)[1], "unit": term.unit.name, "panels": panels, "ordered": False}
+    return _told(term, panels, ordered=False)
 
 
 def _ordered(d: Diagnosis) -> dict[str, Any] | None:
@@ -38,6 +35,11 @@ def _ordered(d: Diagnosis) -> dict[str, Any] | None:
     orders = [o for o in d.unexplained.ordered if o.panel] if d.unexplained and d.verdict == "outside" else []
     if not orders:
         return None
-    words, unit = FORCES[orders[0].of]
-    panels = [o.panel.as_json() for o in orders if o.of == orders[0].of and o.panel]
-    return {"words": words, "unit": unit, "panels": panels, "ordered": True}
+    of = orders[0].of
+    term = next(t for t in terms().values() if t.to == FORCES[of])
+    return _told(term, [o.panel for o in orders if o.of == of and o.panel], ordered=True)
+
+
+def _told(term: Term, panels: Sequence[Panel], *, ordered: bool) -> dict[str, Any]:
+    what = {"words": term.noun.split(" ", 1)[1], "unit": term.unit.name}
+    return {**what, "panels": [panel.as_json() for panel in panels], "ordered": ordered}

@@ -62,6 +62,7 @@ class Diagnosis:
     seen: float | None = None  # share of the catalogue's causes that would have been seen, where nothing was
     ahead: Ahead = Ahead()
     facts: Facts | None = None  # that the verdict follows from
+    rests_on: tuple[Resting, ...] = ()  # what is named for the sake of a single run
 
     @property
     def top(self) -> Fit:
@@ -89,9 +90,8 @@ class Diagnosis:
         """What would be large instead of what was found to be small, as far as data cannot tell them apart."""
         return instead_of_small(self.rounds[0]) if self.verdict == "small" else ()
 
-    @cached_property
-    def rests_on(self) -> tuple[Resting, ...]:
-        """What is named for the sake of a single run."""
+    def resting(self) -> tuple[Resting, ...]:
+        """What is named for the sake of a single run, asked anew: `diagnose` keeps it as `rests_on`."""
         if self.verdict not in ("missing", "tie", "outside") or self.proposal:
             return ()
         decided = {e: self._decided(e) for e in self.effects if e in self.included}

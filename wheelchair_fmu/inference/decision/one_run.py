@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-import numpy as np
-
-from ..chance import power
-from ..estimation.score import LEVEL
+from ..estimation.marginal import widest
+from ..estimation.score import power_at_delta
 from ..policy import DEFAULT, SearchPolicy
 from ..search.candidate import Candidate
 from ..search.probability import in_place
@@ -49,11 +47,11 @@ def _of(group: Sequence[str], r: Round, found: Container[str], policy: SearchPol
     whole = _there(r, group, found)
     if len(runs) < 2 or whole <= 0.5:
         return
-    without = {run: _there(r.leaving_out(run), group, found) for run in runs}
-    run = min(without, key=lambda run: without[run])
+    fewer = {run: r.leaving_out(run) for run in runs}
+    without = {run: _there(fewer[run], group, found) for run in runs}
+    run = min(runs, key=without.__getitem__)
     if without[run] <= 0.5:
-        left = [c for c in r.leaving_out(run).every if c.effect in group]
-        seen = any(_power(c) >= policy.power for c in left)
+        seen = any(_power(c) >= policy.power for c in fewer[run].every if c.effect in group)
         yield Resting(tuple(group), run, whole, without[run], seen)
 
 
@@ -66,5 +64,4 @@ def _there(r: Round, group: Sequence[str], found: Container[str]) -> float:
 def _power(c: Candidate) -> float:
     """With which an effect of δ would be seen, by the widest of its standard errors."""
     _, *covariances = c.usual
-    covariance = max((v / np.outer(c.delta, c.delta) for v in covariances), key=np.trace)
-    return power(1 / float(np.mean(np.diag(covariance))), len(c.delta), LEVEL)
+    return power_at_delta(widest(covariances, c.delta))

@@ -82,8 +82,9 @@ def diagnose(
     if found.verdict == "outside" and experiments and not found.to_fit:
         found = replace(found, next_experiment=lead(found.calibration, found.unexplained))
     said = remarks(found.ladder, found.models.setting.noise_model.sd)
-    notes = (*found.notes, *said, *(one.words for one in found.rests_on))
-    return replace(found, notes=notes, seconds=time.monotonic() - began)
+    rests = found.resting()
+    notes = (*found.notes, *said, *(one.words for one in rests))
+    return replace(found, notes=notes, rests_on=rests, seconds=time.monotonic() - began)
 
 
 class _Search(NamedTuple):

@@ -27,15 +27,15 @@ def left_out(found: Fit) -> dict[str, LeftOut]:
     """By name of each fitted run; none of a fit that has no slopes."""
     if found.evidence.by != found.names:
         return {}
-    whole = found.evidence.S.T @ found.evidence.S + found.prior_slopes**2
+    runs = [(e, e.S[e.finite]) for e in found.evidence.runs]
+    whole = sum((S.T @ S for _, S in runs), found.prior_slopes**2)
     scale = np.sqrt(np.maximum(np.diag(whole), np.finfo(float).tiny))
     known = np.sqrt(np.maximum(np.diag(inverse(whole)), np.finfo(float).tiny))
     without = {}
-    for e, _, part in found.evidence.parts():
-        S, r = found.evidence.S[part], found.evidence.r[part]
+    for e, S in runs:
         size, axes = np.linalg.eigh((whole - S.T @ S) / np.outer(scale, scale))
         told = np.maximum(size, TOLD)
-        pull = np.where(size > TOLD, axes.T @ (S.T @ r / scale), 0.0)
+        pull = np.where(size > TOLD, axes.T @ (S.T @ e.r[e.finite] / scale), 0.0)
         without[e.run.name] = LeftOut(
             moved=-(axes @ (pull / told)) / scale,
             wider=np.maximum(1.0, np.sqrt(axes**2 @ (1 / told)) / scale / known),

@@ -99,11 +99,15 @@ def support_of(
     Where zero is likelier than its standard errors have it, they are widened to say so. Where it is less likely, as other
     values would have to leave their bounds for it, they are narrowed to say that, as far as what that costs, `bounded`,
     explains the fall."""
-    size, scale = estimate / delta, np.outer(delta, delta)
-    covariance = max((c / scale for c in covariances), key=np.trace)
+    size, covariance = estimate / delta, widest(covariances, delta)
     away = squared(size, covariance)
     factor = away / float(np.clip(fall, LEAST, max(away, bounded, LEAST))) if away > 0 else 1.0
     return support(effect, size, covariance * factor, lawful, fall, ahead, policy)
+
+
+def widest(covariances: Sequence[np.ndarray], delta: np.ndarray) -> np.ndarray:
+    """Of several covariances (k, k), that with the largest trace, in units of δ."""
+    return max((c / np.outer(delta, delta) for c in covariances), key=np.trace)
 
 
 def squared(estimate: np.ndarray, covariance: np.ndarray) -> float:

@@ -115,6 +115,11 @@ def _spread(
     return max(lasting, between, key=np.trace)
 
 
+def power_at_delta(covariance: np.ndarray) -> float:
+    """With which an effect of δ is seen whose estimate has this covariance (k, k), in units of δ."""
+    return power(min(1 / float(np.diag(covariance).mean()), 1e6), len(covariance), LEVEL)
+
+
 def score(
     evidence: Evidence,
     off: Projector,
@@ -149,8 +154,6 @@ def score(
     p = chance_beyond(T, int(seen.sum()))
     if len(delta) == 1 and one_sided[0]:
         p = p / 2 if estimate[0] > 0 else 1 - p / 2
-    noncentral = 1 / np.diag(spread).mean()
-    seen_at_delta = power(min(noncentral, 1e6), int(seen.sum()), LEVEL)
     ratio = float(U @ change)
     if one_sided.all() and (estimate <= 0).all():
         ratio = 0.0  # the data ask for the unlawful sign
@@ -163,7 +166,7 @@ def score(
         se,
         p,
         ratio,
-        seen_at_delta,
+        power_at_delta(spread),
         collinearity,
         direction / length if length > 0 else direction,
         delta,

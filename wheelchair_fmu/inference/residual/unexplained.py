@@ -193,7 +193,7 @@ def _shares(going: Sequence[Mapping[str, np.ndarray]], values: Sequence[np.ndarr
     constant's own. None where one run has no others to learn from."""
     if len(going) < 2:
         return {}
-    left = {name: _left([g[name] for g in going], values, basis) for name, (*_, basis) in VARIABLES.items()}
+    left = {name: _left([g[name] for g in going], values, basis) for name, (_, basis, *_) in VARIABLES.items()}
     whole = float(sum(np.nansum(v**2) for v in values))
     constant = min(left[CONSTANT], whole)
     return {name: 1 - it / (whole if name == CONSTANT else constant) for name, it in left.items()}
@@ -284,32 +284,27 @@ CONSTANT = "constant"
 
 
 class Variable(NamedTuple):
-    """What may order a force: what such a force `does`, its unit, its name where the key is none, after how much it comes back,
-    and the functions of it that are learnt."""
+    """What may order a force: what such a force `does`, the functions of it that are learnt, its unit, its name where the key
+    is none, and after how much it comes back."""
 
     does: str
-    unit: str
-    words: str
-    period: float
     basis: Basis
+    unit: str = ""
+    words: str = ""
+    period: float = 0.0
 
 
+STROKES = "is locked to the stroke, as that of a body is that moves and was not recorded"
 TURN = 2 * np.pi
 VARIABLES = {
-    CONSTANT: Variable("stays the same throughout", "", "", 0.0, _same),
-    "speed": Variable("goes with the speed", "m/s", "", 0.0, _bins),
-    "yaw rate": Variable("goes with the yaw rate", "rad/s", "", 0.0, _bins),
-    "heading": Variable("goes with the heading", "rad", "", 0.0, _bins),
-    "push": Variable("goes with the push", "N", "push of both hands", 0.0, _bins),
-    STROKE: Variable(
-        "is locked to the stroke, as that of a body is that moves and was not recorded",
-        "1",
-        "share of a stroke that has passed",
-        0.0,
-        _strokes,
-    ),
-    "caster angle": Variable("goes with the casters' angle", "rad", "mean caster angle", 0.0, _bins),
-    "time": Variable("grows or fades in the course of a run", "s", "", 0.0, _course),
-    "left wheel's angle": Variable("comes back with every turn of the left wheel", "rad", "", TURN, _turns),
-    "right wheel's angle": Variable("comes back with every turn of the right wheel", "rad", "", TURN, _turns),
+    CONSTANT: Variable("stays the same throughout", _same),
+    "speed": Variable("goes with the speed", _bins, "m/s"),
+    "yaw rate": Variable("goes with the yaw rate", _bins, "rad/s"),
+    "heading": Variable("goes with the heading", _bins, "rad"),
+    "push": Variable("goes with the push", _bins, "N", "push of both hands"),
+    STROKE: Variable(STROKES, _strokes, "1", "share of a stroke that has passed"),
+    "caster angle": Variable("goes with the casters' angle", _bins, "rad", "mean caster angle"),
+    "time": Variable("grows or fades in the course of a run", _course, "s"),
+    "left wheel's angle": Variable("comes back with every turn of the left wheel", _turns, "rad", period=TURN),
+    "right wheel's angle": Variable("comes back with every turn of the right wheel", _turns, "rad", period=TURN),
 }
