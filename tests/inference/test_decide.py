@@ -24,7 +24,8 @@ def facts(**what) -> Facts:
     first = Round((), Fit((), {}, none, nothing, 0.0, none), nothing, (), ())
     ladder = (Step("nominal", 2.0, 2.0), Step("calibrated", 1.0, 1.0))
     usual = {"effects": (), "ties": (), "first": first, "ladder": ladder, "proposed": False, "lasts": 1.0, "rms": 1.0}
-    usual |= {"worst": 1.1, "ahead": Ahead(), "strained": (), "likely": {}, "powers": {"a": 0.9}, "causes": {"a": "a"}}
+    usual |= {"forced": False, "worst": 1.1, "ahead": Ahead(), "strained": (), "likely": {}, "powers": {"a": 0.9}}
+    usual |= {"causes": {"a": "a"}}
     return Facts(**(usual | what))
 
 
@@ -38,6 +39,8 @@ def facts(**what) -> Facts:
         ({"effects": ("a",), "ties": (("a", "b"),)}, "tie"),
         ({"effects": ("a",), "strained": ("chair.a",)}, "outside"),
         ({"effects": ("a",), "proposed": True}, "outside"),
+        ({"effects": ("a",), "forced": True}, "outside"),
+        ({"forced": True}, "outside"),
         ({"effects": ("a",), "ladder": (Step("n", 3.0, 3.0), Step("c", 1.5, 1.5), Step("+a", 1.4, 1.4))}, "outside"),
         ({"effects": ("a",), "lasts": 3.0, "ladder": (Step("n", 3, 3), Step("c", 1.3, 1.3), Step("+a", 1.2, 1.2))}, "outside"),
         ({"effects": ("a",), "lasts": 1.0, "ladder": (Step("n", 3, 3), Step("c", 1.3, 1.3), Step("+a", 1.2, 1.2))}, "missing"),

@@ -156,10 +156,12 @@ def test_another_effect_may_overtake_what_was_found_first(tmp_path):
     assert drops["push_force_gain"] > 1.2 * drops["wheel_inertia"]
     assert found.effects == ("lateral_load_transfer", "wheel_inertia") and found.verdict == "missing"
     assert found.final.values["effect.wheel_inertia.m"] == pytest.approx(3.0, abs=0.3)
-    assert [s.name for s in found.ladder[2:]] == ["+lateral_load_transfer", "+wheel_inertia"]
+    first, *helping, last = (s.name[1:] for s in found.ladder[2:])
+    assert (first, last) == ("lateral_load_transfer", "wheel_inertia")
+    assert all(found.beliefs[e].large < 0.05 for e in helping)
     assert found.ladder[-1].heldout < 1.02
     again = next(r for r in found.rounds if r.winner and r.winner.effect == "wheel_inertia")
-    assert again.effects == ("lateral_load_transfer",)
+    assert again.effects == (first, *helping)
     (stable,) = (s for s in bootstrap(found, 200).rounds if s.effect == "wheel_inertia")
     assert stable.first["wheel_inertia"] > 0.9 > 0.1 > stable.first["push_force_gain"]
 
@@ -279,20 +281,12 @@ def heavy_casters(tmp_path_factory):
 def test_effects_that_explain_anything_only_together_are_found_together(heavy_casters):
     found = heavy_casters
     assert "caster_inertia" in found.effects and {"caster_trail", "caster_inertia"} <= set(found.included)
-    assert set(found.included) <= {"caster_trail", "caster_inertia", "caster_friction"}
-    assert found.ladder[1].left > 2.5 > 1.7 > found.ladder[-1].left
+    assert set(found.included) <= {"caster_trail", "caster_inertia", "caster_friction", "turn_slip"}
+    assert found.ladder[1].left > 2.5 > 1.3 > found.ladder[-1].left
     steps = [s.name[1:] for s in found.ladder[2:]]
     assert set(found.effects) <= set(steps) and tuple(steps) == found.included
     rows = {row["effect"]: row["verdict"] for row in as_json(found)["ranking"]}
-    assert all(rows[e] == "small" for e in set(steps) - set(found.effects))
-
-
-@pytest.mark.nightly
-@pytest.mark.xfail(
-    strict=True, reason="where casters flip the fit ends in one of many minima: 1.65, of 1.14 from near the truth"
-)
-def test_effects_that_are_found_together_explain_all(heavy_casters):
-    assert heavy_casters.ladder[-1].left < 1.3
+    assert all(rows[e] in ("small", "cannot_see") for e in set(steps) - set(found.effects)), "none of them is named"
 
 
 @among("rolling_resistance_asymmetry", "camber_misalignment", "gyro_bias")

@@ -50,6 +50,6 @@ def test_two_rivals_have_the_contours_of_their_joint_fit(models):
     across = heights[middle, [middle - 1, middle + 1]]
     assert np.mean(across) == pytest.approx(about[middle + 1] ** 2, rel=0.5)
     assert pair["share"] == pytest.approx(0.95)
-    assert pair["alone"][0] < pair["alone"][1], "what was found does without its rival"
+    assert pair["alone_heights"][0] < pair["alone_heights"][1], "what was found does without its rival"
     tied = landscape(models, {**TOLD, "ties": [pair["effects"]]})["pair"]
     assert tied["level"] == pytest.approx(2 * np.log(100)) and tied["share"] == pytest.approx(0.99), "a hundred to one"

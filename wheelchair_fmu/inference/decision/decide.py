@@ -16,8 +16,8 @@ from .ahead import Ahead
 
 @dataclass(frozen=True)
 class Facts:
-    """What a verdict follows from: the `effects` that are probably there, the `first` round, the staircase, and whether a
-    generic term is `proposed`.
+    """What a verdict follows from: the `effects` that are probably there, the `first` round, the staircase, whether a generic
+    term is `proposed`, and whether forces lead the runs that something orders, or that are more than a floor's (`forced`).
 
     Of what the last model leaves on fitted runs: after how many samples it is forgotten (`lasts`), its whitened RMS over all
     and the `worst` of one channel in one run; and what is left `ahead`, on those held out. `strained` are given values that are
@@ -30,6 +30,7 @@ class Facts:
     first: Round
     ladder: tuple[Step, ...]
     proposed: bool
+    forced: bool
     lasts: float
     rms: float
     worst: float
@@ -47,7 +48,7 @@ class Facts:
 def decide(facts: Facts, policy: SearchPolicy = DEFAULT) -> str:
     """The verdict. No model is adequate that is likely to lack something."""
     lasting = facts.lasts > policy.lasting
-    if facts.proposed or facts.ladder[-1].left > policy.unexplained or facts.strained:
+    if facts.proposed or facts.forced or facts.ladder[-1].left > policy.unexplained or facts.strained:
         return "outside"
     if facts.effects:
         if (lasting and insufficient(facts.ladder, policy)) or facts.ahead.unexplained(policy):

@@ -67,18 +67,21 @@ def diagnose(
     began = time.monotonic()
     campaign = windows(campaign)
 
-    def concluded(search: _Search, terms: Mapping[str, Effect], heard: tuple[str, ...] = ()) -> Diagnosis:
-        return _concluded(_to_the_top(search, stepped), terms, experiments, heard, stepped)
-
     def among(now: Selection | Diagnosis, heard: tuple[str, ...]) -> _Among:
-        return _among_forces(now, lambda led: concluded(_begun(led, {}, stepped), {}, heard), progress)
+        def again(led: Models, before: Strength) -> Diagnosis:
+            return _concluded(_to_the_top(_begun(led, {}, stepped), stepped), {}, experiments, heard, stepped, before)
+
+        return _among_forces(now, again, progress)
 
     models = Models.of(ModelFactory(campaign, variant or Variant(), frozenset(fixed), calibrated), policy, progress, effort)
     search = _begun(models, generic or {}, stepped)
     search = search._replace(found=search.found.to_the_top(policy.unexplained))
     # Whoever searches on here looks for the rest in a model that lacks what is mainly missing: forces are asked for first.
     tried = among(search.found, search.heard) if search.found.ladder[-1].left > policy.unexplained else None
-    found = tried.found if tried and tried.found else _with_forces(concluded(search, generic or {}), tried, among)
+    found = tried.whole if tried else None
+    if not found:
+        found = _concluded(_to_the_top(search, stepped), generic or {}, experiments, (), stepped)
+        found = _with_forces(found, tried, among)
     if found.verdict == "outside" and experiments and not found.to_fit:
         found = replace(found, next_experiment=lead(found.calibration, found.unexplained))
     said = remarks(found.ladder, found.models.setting.noise_model.sd)
@@ -105,44 +108,55 @@ class _Search(NamedTuple):
 
 
 class _Among(NamedTuple):
-    """A search among forces that nobody recorded: how strong these are beside the calibrated model, what was `found` if that
-    counts, and what is `left` to these forces, if such a search was made."""
+    """A search among forces that nobody recorded: how strong these are beside the calibrated model, what was `found`, and the
+    staircase, if the model at its top foretells more than a calibrated one."""
 
     before: Strength
     found: Diagnosis | None = None
-    left: Unexplained | None = None
+    ladder: tuple[Step, ...] | None = None
+
+    @property
+    def better(self) -> Diagnosis | None:
+        """What was found, if its model foretells more than a calibrated one."""
+        return replace(self.found, ladder=self.ladder) if self.found and self.ladder else None
+
+    @property
+    def whole(self) -> Diagnosis | None:
+        """The same where, besides, what is left to forces is nobody's effect."""
+        return self.better if self.rest and self.rest.nobodys else None
+
+    @property
+    def rest(self) -> Unexplained | None:
+        """What is left to forces."""
+        return self.found.unexplained if self.found else None
 
 
-def _among_forces(now: Selection | Diagnosis, again: Callable[[Models], Diagnosis], say: Callable[[str], None]) -> _Among:
-    """The search made `again` with the force among the noise that the calibrated model lacks: if that is no more than a floor
-    does, and nothing orders it, it is nobody's effect."""
+def _among_forces(
+    now: Selection | Diagnosis, again: Callable[[Models, Strength], Diagnosis], say: Callable[[str], None]
+) -> _Among:
+    """The search made `again` with the force among the noise that the calibrated model lacks."""
     calibrated = now.rounds[0].fit
     before, along = needed(now.models, (), calibrated)
     if not before.fall:
         return _Among(before)
     say("searching again, with forces that nobody recorded")
     try:
-        second = again(led(now.models, calibrated, before, along))
+        found = again(led(now.models, calibrated, before, along), before)
     except SimulationError:  # forces so strong that they hide all that a model does
         return _Among(before)
-    rest = left(second.models, second.included, second.top, before)
-    ladder = (
-        None
-        if rest.ordered or not rest.like_a_floor
-        else staircase(now.ladder, calibrated.values, second.ladder, second.models)
-    )
-    return _Among(before, replace(second, ladder=ladder, unexplained=rest) if ladder else None, rest)
+    return _Among(before, found, staircase(now.ladder, calibrated.values, found.ladder, found.models))
 
 
 def _with_forces(found: Diagnosis, tried: _Among | None, among: Callable[[Diagnosis, tuple[str, ...]], _Among]) -> Diagnosis:
     """The diagnosis, with the force that its model lacks. Where much is left that no effect explains, the search `among` such
-    forces is what counts, if it does; `tried` is what came of it, where it was made."""
+    forces is what counts: its estimates are not bent by what is left, be it nobody's effect or a law that is not known. But
+    a term that does what no effect does says more than forces do. `tried` is what came of that search, where it was made."""
     if found.verdict == "outside" and found.ladder[-1].left >= found.models.policy.a_little:
         tried = tried or among(found, found.heard)
-        if tried.found:
-            return tried.found
+        if best := tried.whole or (None if found.proposal else tried.better):
+            return best
         if tried.before.fall:
-            rest = tried.left or left(found.models, found.included, found.top, tried.before)
+            rest = tried.rest or left(found.models, found.included, found.top, tried.before)
             return replace(found, unexplained=rest)
     before = tried.before if tried else needed(found.models, (), found.rounds[0].fit)[0]
     return replace(found, unexplained=Unexplained(before, needed(found.models, found.included, found.top)[0], ()))
@@ -154,8 +168,10 @@ def _concluded(
     experiments: Sequence[Experiment],
     heard: tuple[str, ...],
     stepped: Callable[[Sequence[Step]], None],
+    before: Strength | None = None,
 ) -> Diagnosis:
-    """The verdict on where a search has ended; `heard` are sentences on columns and clocks that there are already."""
+    """The verdict on where a search has ended; `heard` are sentences on columns and clocks that there are already. `before` is
+    how strong the forces are that the calibrated model lacks, of a search among them."""
     beginning, found = search
     models, rounds, base = found.models, found.rounds, found.top.fit
     terms, proposal = leftover(found, generic)
@@ -174,12 +190,14 @@ def _concluded(
     strained = bent if proposal else of_another_chair(found, bent)
     held = ahead(models, found.top, found.ladder, bool(effects)) if proposal is None else Ahead()
     likely = {} if effects else likely_of(models.factory, decided, rounds[-1])
+    rest = left(models, included, base, before) if before else None
     facts = Facts(
         effects=effects,
         ties=ties,
         first=rounds[0],
         ladder=ladder,
         proposed=proposal is not None,
+        forced=rest is not None and not rest.nobodys,
         # Where forces lead the runs, what lasts is theirs: whether anything is behind it is asked of them (see `Unexplained`).
         lasts=0.0 if models.factory.leads else correlation_time(base.evidence),
         rms=base.evidence.rms,
@@ -222,6 +240,7 @@ def _concluded(
         heard=heard,
         notes=(*_notes(found, heard, verdict, proposal, values, likely), *which_to_fit(ladder, held, models.policy)),
         next_experiment=_next(models, verdict, groups, rounds, experiments),
+        unexplained=rest,
         seen=facts.seen(models.policy) if verdict in ("adequate", "cannot_see") else None,
         ahead=held,
         facts=facts,

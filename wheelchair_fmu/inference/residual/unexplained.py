@@ -89,12 +89,17 @@ class Unexplained:
         return tuple(o for o in self.orders if o.by not in nobodys)
 
     @property
+    def nobodys(self) -> bool:
+        """Is it no more than a flat floor does, and ordered by nothing, so that no effect is behind it?"""
+        return self.like_a_floor and not self.ordered
+
+    @property
     def words(self) -> list[str]:
         """What a person is told."""
         if not self.before.fall and not self.after.fall:
             return ["The model needs no force and no moment that nobody recorded."]
         told = [f"As calibrated, the model needs {_size(self.before)} that nobody recorded; in the end, {_size(self.after)}."]
-        if self.forces and not self.ordered and self.like_a_floor:
+        if self.forces and self.nobodys:
             nothing = "nothing else" if self.orders else "nothing"
             flat = "a floor that counts as flat gives as much: no effect is behind them"
             told.append(f"These forces follow {nothing} that was recorded, and {flat}.")
