@@ -6,7 +6,8 @@ from __future__ import annotations
 import os
 import shutil
 import time
-from collections.abc import Callable, Mapping
+import tomllib
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -45,6 +46,17 @@ SETTINGS = {
     "holdout-slalom": '{ "effect.relaxation_length.sigma" = 0.3 }',
     "holdout-strokes": '{ "effect.push_force_delay.tau" = 0.03 }',
 }
+
+
+def with_runs(source: Path, folder: Path, names: Collection[str]) -> Path:
+    """A copy of a campaign, in `folder`, with these of its runs alone."""
+    shutil.copytree(source, folder)
+    file = folder / "campaign.toml"
+    head, *runs = file.read_text(encoding="utf-8").split("[[run]]")
+    kept = [run for run in runs if Path(tomllib.loads(run)["file"]).stem in names]
+    assert len(kept) == len(names), f"no such runs in {source}"
+    file.write_text("[[run]]".join([head, *kept]), encoding="utf-8")
+    return folder
 
 
 def with_settings(source: Path, folder: Path, settings: Mapping[str, str] = SETTINGS) -> Path:

@@ -13,7 +13,7 @@ from weakref import ref
 import pytest
 from typer.testing import CliRunner
 
-from tests.kit import with_settings
+from tests.kit import with_runs, with_settings
 from wheelchair_fmu.api.comparing import compared
 from wheelchair_fmu.campaign import condensed, read
 from wheelchair_fmu.cli import compare
@@ -30,6 +30,12 @@ SAMPLE = str(Path(__file__).parents[2] / "examples" / "sample-campaign")
 
 def run(*words: str):
     return CliRunner().invoke(app, list(words), catch_exceptions=False)
+
+
+@pytest.fixture
+def brief(tmp_path_factory) -> str:
+    """The sample campaign with two of its runs."""
+    return str(with_runs(Path(SAMPLE), tmp_path_factory.mktemp("brief") / "campaign", ("coast-down", "holdout-random")))
 
 
 def test_compare_says_where_the_error_is():
@@ -62,8 +68,8 @@ def test_samples_that_are_compared_as_means_are_forgotten_before(monkeypatch):
     assert recorded and not left
 
 
-def test_json_is_all_that_compare_prints_whatever_it_writes(tmp_path):
-    told = json.loads(run("compare", SAMPLE, "--json", "-o", str(tmp_path)).stdout)
+def test_json_is_all_that_compare_prints_whatever_it_writes(brief, tmp_path):
+    told = json.loads(run("compare", brief, "--json", "-o", str(tmp_path)).stdout)
     assert told["campaign"] == "sample-chair" and list(tmp_path.glob("*.csv"))
 
 
@@ -191,9 +197,9 @@ def test_a_run_in_which_the_chair_stands_is_left_out(tmp_path):
     assert "straight-strokes" not in [r["run"] for r in told["runs"]] and len(told["runs"]) == 9
 
 
-def test_a_notebook_s_colours_bring_no_control_codes_into_a_pipe(tmp_path, monkeypatch):
+def test_a_notebook_s_colours_bring_no_control_codes_into_a_pipe(brief, tmp_path, monkeypatch):
     monkeypatch.setenv("FORCE_COLOR", "1")
-    told = run("compare", SAMPLE, "-o", str(tmp_path))
+    told = run("compare", brief, "-o", str(tmp_path))
     assert told.exit_code == 0 and "\x1b" not in told.output
 
 

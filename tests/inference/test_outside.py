@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -16,16 +17,28 @@ from wheelchair_fmu.cli.main import app
 from wheelchair_fmu.contracts.own import load
 from wheelchair_fmu.inference.decision.diagnosis import Diagnosis
 from wheelchair_fmu.inference.decision.verdict import diagnose
+from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library, terms
 
+FEW = (
+    "caster_trail",
+    "caster_friction",
+    "aerodynamic_drag",
+    "rolling_resistance_asymmetry",
+    "scrub_torque",
+    "floor_cross_slope",
+)
+WHOLE = pytest.param(tuple(bundled()), id="whole catalogue", marks=pytest.mark.nightly)
 
-@pytest.fixture(scope="module")
-def told(tmp_path_factory) -> tuple[Diagnosis, Path]:
+
+@pytest.fixture(scope="module", params=[pytest.param(FEW, id="few effects"), WHOLE])
+def told(request, tmp_path_factory) -> tuple[Diagnosis, Path]:
     """What `wheelchair diagnose` found, and the folder of what it wrote."""
     campaign, folder, found = measured("open-09-outside").path, tmp_path_factory.mktemp("outside"), []
 
-    def kept(*words, **options) -> Diagnosis:
-        found.append(diagnose(*words, **options))
+    def kept(campaign, chair, *words, **options) -> Diagnosis:
+        few = replace(chair, catalogue={e: r for e, r in chair.catalogue.items() if e in request.param})
+        found.append(diagnose(campaign, few, *words, **options))
         return found[0]
 
     with pytest.MonkeyPatch.context() as patched:

@@ -122,13 +122,8 @@ class _Among(NamedTuple):
 
     @property
     def whole(self) -> Diagnosis | None:
-        """The same where, besides, what is left to forces is nobody's effect."""
-        return self.better if self.rest and self.rest.nobodys else None
-
-    @property
-    def rest(self) -> Unexplained | None:
-        """What is left to forces."""
-        return self.found.unexplained if self.found else None
+        """The same where, besides, its model lacks nothing, and what is left to forces is nobody's effect."""
+        return self.better if self.better and self.better.verdict != "outside" else None
 
 
 def _among_forces(
@@ -156,7 +151,7 @@ def _with_forces(found: Diagnosis, tried: _Among | None, among: Callable[[Diagno
         if best := tried.whole or (None if found.proposal else tried.better):
             return best
         if tried.before.fall:
-            rest = tried.rest or left(found.models, found.included, found.top, tried.before)
+            rest = tried.found.unexplained if tried.found else left(found.models, found.included, found.top, tried.before)
             return replace(found, unexplained=rest)
     before = tried.before if tried else needed(found.models, (), found.rounds[0].fit)[0]
     return replace(found, unexplained=Unexplained(before, needed(found.models, found.included, found.top)[0], ()))
