@@ -249,4 +249,5 @@ def test_an_error_that_comes_to_the_noise_has_not_risen(before, after, rises):
     one, other = (
         replace(NONE, evidence=evidence([np.full((50, 1), rms)], [np.zeros((50, 1, 0))], ())) for rms in (before, after)
     )
-    assert risen(one, other, DEFAULT) == rises
+    assert risen(one, other, DEFAULT, led=False) == rises
+    assert risen(one, other, DEFAULT, led=True) == (after > 1.1 * max(1.0, before)), "forces are what leaves nothing"

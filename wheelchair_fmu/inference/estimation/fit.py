@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,6 +33,9 @@ FURTHER = 3  # at most so many times, each twice as long
 AT_BOUND = 1e-3  # of a parameter's scale
 STEEPEST = 1e100  # slope in standard deviations per unit, of whose squares no computer loses count
 LEAST_SHARE = 0.2  # of a step that is tried
+# Dry friction of what hardly moves: where it holds, a filter expects nothing to happen, and that nothing does tells more of the
+# friction than readings' slopes by it. That takes several times as long.
+DRY = ("effect.caster_friction.M", "effect.caster_friction.rate", "caster.M")
 REACH = 4.0  # standard deviations of the prior; a value further off is no calibration but another chair
 
 
@@ -157,25 +160,47 @@ class Problem:
     def whole_gradient(self, here: Evidence, theta: np.ndarray) -> np.ndarray:
         """−½ the slope of the deviance (k,), by differences of a standard error: `gradient`, and what the filters' own change
         does."""
-        before, found = self.deviance(here, theta), np.zeros(len(theta))
+        found = np.zeros(len(theta))
         for j, curvature in enumerate(np.diag(self.information(here))):
             by = curvature**-0.5 if theta[j] + curvature**-0.5 <= self.upper[j] else -(curvature**-0.5)
-            trial = theta + by * (np.arange(len(theta)) == j)
-            there = self.likelihood.evidence(self.likelihood.campaign.fit, self.values(trial))
-            found[j] = (curvature * by - (self.deviance(there, trial) - before) / by) / 2
+            found[j] = (curvature * by - self._rise(here, theta, j, by) / by) / 2
         return found
+
+    def _rise(self, here: Evidence, theta: np.ndarray, j: int, by: float) -> float:
+        """By how much the deviance rises as one value goes so far."""
+        trial = theta + by * (np.arange(len(theta)) == j)
+        there = self.likelihood.evidence(self.likelihood.campaign.fit, self.values(trial))
+        return self.deviance(there, trial) - self.deviance(here, theta)
+
+    def led_slopes(self, here: Evidence, theta: np.ndarray, hold: Container[str]) -> tuple[np.ndarray, np.ndarray]:
+        """`gradient` (k,) and `information` (k, k); of what is `DRY` by the likelihood itself, from its deviance a standard
+        error to both sides, or to one beside a bound; with no way to go for what is to `hold`."""
+        g, information = self.gradient(here.S, here.r, theta), self.information(here)
+        for j in (j for j, name in enumerate(self.names) if name in DRY):
+            if self.names[j] in hold:
+                information[j, :], information[:, j], information[j, j], g[j] = 0.0, 0.0, 1.0, 0.0
+                continue
+            by = information[j, j] ** -0.5
+            sides = [side for side in (by, -by) if self.lower[j] <= theta[j] + side <= self.upper[j]]
+            rises = np.array([self._rise(here, theta, j, side) for side in sides])
+            if len(sides) == 2:
+                information[j, j] = max(information[j, j], float(rises.mean()) / by**2)
+            if sides:
+                g[j] = float(np.mean((information[j, j] * np.square(sides) - rises) / sides)) / 2
+        return g, information
 
     def expected(self, here: Evidence, theta: np.ndarray) -> float:
         """How much the squares would fall at most, if slopes held all the way: of what no bound holds."""
-        return float(self.gradient(here.S, here.r, theta) @ self.newton(here, theta))
+        return self.towards(theta, self.gradient(here.S, here.r, theta), self.information(here))[1]
 
-    def newton(self, here: Evidence, theta: np.ndarray) -> np.ndarray:
-        """The step (k,) to where squares would be least, if slopes held all the way: of what no bound holds."""
-        g, near = self.gradient(here.S, here.r, theta), AT_BOUND * self.scale
+    def towards(self, theta: np.ndarray, g: np.ndarray, information: np.ndarray) -> tuple[np.ndarray, float]:
+        """The step (k,) to where a gradient would be none, if slopes held all the way, of what no bound holds; and what it
+        promises."""
+        near = AT_BOUND * self.scale
         free = ~((theta < self.lower + near) & (g < 0) | (theta > self.upper - near) & (g > 0))
         step = np.zeros(len(theta))
-        step[free] = inverse(self.information(here)[np.ix_(free, free)]) @ g[free]
-        return step
+        step[free] = inverse(information[np.ix_(free, free)]) @ g[free]
+        return step, float(g @ step)
 
     def stepped(self, theta: np.ndarray, step: np.ndarray) -> np.ndarray:
         """As much of a step as slopes hold for, within bounds."""
@@ -226,18 +251,19 @@ def fit(
     here: Evidence | None = None,
     rival: float = math.inf,
     most: int = MOST,
+    hold: Container[str] = (),
 ) -> Fit:
     """The most likely values of `names`, from `start`; `here` is the evidence there, with sensitivities by `names`, if known.
 
     `rival` is the deviance of another model: one that falls too slowly to come up with it is not followed to its end. `most` is
-    how often all is linearised anew.
+    how often all is linearised anew. What is dry friction, and of these names, stays where it is where forces lead the runs.
     Raises SimulationError where the model cannot be simulated at the start.
     """
     problem = Problem(likelihood, names)
     theta = problem.inside(start)
     here = here or problem.linearised(theta)
     if likelihood.leads:
-        return _fit_led(problem, theta, here, most if names else 0)
+        return _fit_led(problem, theta, here, most if names else 0, hold)
     for _ in range(most if names else 0):
         enough = max(STRAIGHT, SLIGHT * (problem.squares(here, theta) - len(here.r)))
         if problem.expected(here, theta) < max(enough, (problem.deviance(here, theta) - rival) / MOST):
@@ -266,25 +292,27 @@ def _found(problem: Problem, theta: np.ndarray, here: Evidence) -> Fit:
     return Fit(problem.names, values, covariance, here, deviance, prior, problem.lower, problem.upper)
 
 
-def _fit_led(problem: Problem, theta: np.ndarray, here: Evidence, most: int) -> Fit:
+def _fit_led(problem: Problem, theta: np.ndarray, here: Evidence, most: int, hold: Container[str]) -> Fit:
     """The same where forces that nobody recorded lead the runs: the values at which innovations tell nothing more of them.
 
     A filter knows what forces do to a chair of this mass, so that the likelihood takes how large innovations are for a
     measurement of the mass. It is none that anyone would trust: filters weigh the readings and are no evidence themselves
     (generalised estimating equations; Liang and Zeger 1986), and no step is asked whether it makes the likelihood larger.
     """
-    promised, share = problem.expected(here, theta), 1.0
+    if not most:
+        return _found(problem, theta, here)
+    (step, promised), share = problem.towards(theta, *problem.led_slopes(here, theta, hold)), 1.0
     for _ in range(most):
         if promised < STRAIGHT:
             break
-        to = problem.stepped(theta, share * problem.newton(here, theta))
+        to = problem.stepped(theta, share * step)
         try:
             there = problem.linearised(to)
-            still = problem.expected(there, to)
+            further, still = problem.towards(to, *problem.led_slopes(there, to, hold))
         except SimulationError:
             still = math.inf
         if still < promised:
-            theta, here, promised, share = to, there, still, 1.0
+            theta, here, step, promised, share = to, there, further, still, 1.0
         elif share > LEAST_SHARE:
             share /= 2
         else:

@@ -40,7 +40,7 @@ def candidate(
     if starts:
         models.say(f"refitting {effect}")
     rival = min(rival, base.fit.deviance)  # which it has as a special case
-    found, anew = _best_of(models, effects, starts, rival), _afresh(models, base, s, least, rival)
+    found, anew = _best_of(models, effects, starts, rival, frozenset(base.fit.names)), _afresh(models, base, s, least, rival)
     if found is not None and found.deviance > base.fit.deviance and not models.factory.leads:
         found = _from_base(models, base, s, found)
     afresh = anew is not None and (found is None or anew.deviance < found.deviance)
@@ -54,7 +54,7 @@ def candidate(
         models.remember(effects, found, ended=found.deviance < rival)  # who falls behind a rival may not have been followed
     found = models.compared(found, effect, base.fit)
     found = replace(found, evidence=likelihood.restarted(found.evidence, found.values))
-    if risen(base.fit, found, models.policy):
+    if risen(base.fit, found, models.policy, led=models.factory.leads):
         return None  # no fit: the model without the effect is one with it
     try:
         held = likelihood.restarted(models.heldout(likelihood, found, tune_start=0), found.values)
@@ -64,22 +64,27 @@ def candidate(
     return replace(judged, afresh=afresh)
 
 
-def risen(before: Fit, after: Fit, policy: SearchPolicy) -> bool:
+def risen(before: Fit, after: Fit, policy: SearchPolicy, *, led: bool) -> bool:
     """Does one more effect cost fitted runs an error above the noise? A model whose casters swing may leave less than that, as
     errors of the pushes are found with them. Where nothing was left to explain, one that leaves more than noise explains
-    nothing: it is likelier only as its filter, with casters that stick, expects less noise than there is."""
-    nothing_left = before.evidence.rms < policy.nothing_left < after.evidence.rms
-    return nothing_left or after.evidence.rms > policy.structured * max(1.0, before.evidence.rms)
+    nothing: it is likelier only as its filter, with casters that stick, expects less noise than there is. Where runs are `led`
+    by forces, these are what leaves nothing."""
+    was, now = before.evidence.rms, after.evidence.rms
+    nothing_left = was < policy.nothing_left < now and not led
+    return nothing_left or now > policy.structured * max(1.0, was)
 
 
-def _best_of(models: Models, effects: Sequence[str], starts: Sequence[Start], rival: float) -> Fit | None:
+def _best_of(
+    models: Models, effects: Sequence[str], starts: Sequence[Start], rival: float, known: frozenset[str]
+) -> Fit | None:
     """The most likely model that these starts lead to, one step from each, and to the end from the best. Constants of the
-    effect's law are as its record has them until its size is known: of something small any law would do."""
+    effect's law are as its record has them until its size is known: of something small any law would do. `known` is what the
+    model without it was fitted by."""
     constants = models.factory.constants(effects[-1])
 
     def one_step(start: Start) -> Fit | None:
         try:
-            return models.refit(effects, *start, constants, rival=rival, most=1)
+            return models.refit(effects, *start, constants, rival=rival, most=1, hold=known)
         except SimulationError:
             return None
 
@@ -88,11 +93,11 @@ def _best_of(models: Models, effects: Sequence[str], starts: Sequence[Start], ri
     for ahead in sorted(begun, key=lambda f: f.deviance)[: models.effort.ended if len(own) > 1 else 1]:
         signs, *others = (_signs([f.values[n] for n in own]) for f in (ahead, *ended))
         if signs not in others:
-            ended.append(models.refit(effects, ahead.values, ahead.evidence, constants, rival=rival))
+            ended.append(models.refit(effects, ahead.values, ahead.evidence, constants, rival=rival, hold=known))
             rival = min(rival, ended[-1].deviance)
     best = min(ended, key=lambda f: f.deviance, default=None)
     try:
-        return models.refit(effects, best.values) if best and constants else best
+        return models.refit(effects, best.values, hold=known) if best and constants else best
     except SimulationError:
         return best  # by the law as its record has it
 

@@ -101,7 +101,7 @@ class Selection:
             models, top = known.settled((*self.rounds[-1].effects, best.effect), best.fit)
         except SimulationError:
             return None
-        if risen(self.top.fit, top.fit, self.models.policy):
+        if risen(self.top.fit, top.fit, self.models.policy, led=self.models.factory.leads):
             return None
         return self.up_to(models, top)._pruned()
 
