@@ -192,8 +192,9 @@ def test_an_effect_that_raises_the_error_once_its_runs_start_anew_is_not_put_in(
     def top(*effects, rms):
         return Model(effects, replace(fit(0.0), evidence=Some(rms=rms)), Evidence((), ()))
 
-    moved = Some(effort=USUAL, policy=DEFAULT)
-    models = Some(effort=USUAL, policy=DEFAULT, settled=lambda effects, found: (moved, top(*effects, rms=rms)))
+    usual = {"effort": USUAL, "policy": DEFAULT, "factory": Some(leads=False)}
+    moved = Some(**usual)
+    models = Some(**usual, settled=lambda effects, found: (moved, top(*effects, rms=rms)))
     *ladder, part, toe = (Step(name, rms, rms) for name in ("nominal", "calibrated", "+drag", "+part", "+toe"))
     foot = Selection(models, top("drag", rms=1.15), tuple(ladder), 0.0, print, rounds=(Some(effects=("drag",)),))
     helped = replace(foot, ladder=(*ladder, part), helping=frozenset({"toe"}))
