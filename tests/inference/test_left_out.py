@@ -52,6 +52,18 @@ def test_a_fit_without_one_run_is_what_all_others_give(which):
         assert out.deviance == pytest.approx(alone.deviance, abs=1e-6)
 
 
+def test_what_no_run_tells_is_as_little_known_without_any_of_them():
+    rng = np.random.default_rng(12)
+    slopes = signals(rng, RUNS, 200, 3)
+    for s in slopes:
+        s[..., 2] = 0.0
+    _, found = fits(measured(rng, slopes, 0.0), slopes)
+    whole = replace(found, prior_slopes=np.diag([1 / SD[0], 1 / SD[1], 0.0]))
+    with np.errstate(all="raise"):
+        for out in left_out(whole).values():
+            assert out.moved[2] == 0.0 and out.wider[2] == pytest.approx(1.0) and np.all(out.wider[:2] > 1.0)
+
+
 def candidate(y, slopes):
     base, found = fits(y, slopes)
     size, covariance = values(found)[2:], found.covariance[2:, 2:]

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from .fit import Fit
-from .inverse import inverse
 
 TOLD = 1e-6  # of what all runs tell along a direction: others that tell less tell nothing
 
@@ -29,16 +28,22 @@ def left_out(found: Fit) -> dict[str, LeftOut]:
         return {}
     runs = [(e, e.S[e.finite]) for e in found.evidence.runs]
     whole = sum((S.T @ S for _, S in runs), found.prior_slopes**2)
-    scale = np.sqrt(np.maximum(np.diag(whole), np.finfo(float).tiny))
-    known = np.sqrt(np.maximum(np.diag(inverse(whole)), np.finfo(float).tiny))
+    scale = np.sqrt(np.where(np.diag(whole) > 0, np.diag(whole), 1.0))  # of what no run tells, any will do
+    *_, known = _told(whole, scale)
     without = {}
     for e, S in runs:
-        size, axes = np.linalg.eigh((whole - S.T @ S) / np.outer(scale, scale))
+        size, axes, sure = _told(whole - S.T @ S, scale)
         told = np.maximum(size, TOLD)
         pull = np.where(size > TOLD, axes.T @ (S.T @ e.r[e.finite] / scale), 0.0)
         without[e.run.name] = LeftOut(
             moved=-(axes @ (pull / told)) / scale,
-            wider=np.maximum(1.0, np.sqrt(axes**2 @ (1 / told)) / scale / known),
+            wider=np.maximum(1.0, sure / known),
             deviance=found.deviance - e.deviance - float(pull @ (pull / told)),
         )
     return without
+
+
+def _told(information: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What is told along each axis (n,), the axes (n, n), and standard errors (n,), of values measured on such a scale (n,)."""
+    size, axes = np.linalg.eigh(information / np.outer(scale, scale))
+    return size, axes, np.sqrt(axes**2 @ (1 / np.maximum(size, TOLD)))
