@@ -160,33 +160,33 @@ class Problem:
     def whole_gradient(self, here: Evidence, theta: np.ndarray) -> np.ndarray:
         """−½ the slope of the deviance (k,), by differences of a standard error: `gradient`, and what the filters' own change
         does."""
-        found = np.zeros(len(theta))
+        before, found = self.deviance(here, theta), np.zeros(len(theta))
         for j, curvature in enumerate(np.diag(self.information(here))):
             by = curvature**-0.5 if theta[j] + curvature**-0.5 <= self.upper[j] else -(curvature**-0.5)
-            found[j] = (curvature * by - self._rise(here, theta, j, by) / by) / 2
+            found[j] = _half_slope(curvature, np.array([by]), np.array([self._there(theta, j, by) - before]))
         return found
 
-    def _rise(self, here: Evidence, theta: np.ndarray, j: int, by: float) -> float:
-        """By how much the deviance rises as one value goes so far."""
+    def _there(self, theta: np.ndarray, j: int, by: float) -> float:
+        """The deviance where one value is so much larger."""
         trial = theta + by * (np.arange(len(theta)) == j)
-        there = self.likelihood.evidence(self.likelihood.campaign.fit, self.values(trial))
-        return self.deviance(there, trial) - self.deviance(here, theta)
+        return self.deviance(self.likelihood.evidence(self.likelihood.campaign.fit, self.values(trial)), trial)
 
     def led_slopes(self, here: Evidence, theta: np.ndarray, hold: Container[str]) -> tuple[np.ndarray, np.ndarray]:
         """`gradient` (k,) and `information` (k, k); of what is `DRY` by the likelihood itself, from its deviance a standard
         error to both sides, or to one beside a bound; with no way to go for what is to `hold`."""
         g, information = self.gradient(here.S, here.r, theta), self.information(here)
+        before = self.deviance(here, theta)
         for j in (j for j, name in enumerate(self.names) if name in DRY):
             if self.names[j] in hold:
                 information[j, :], information[:, j], information[j, j], g[j] = 0.0, 0.0, 1.0, 0.0
                 continue
             by = information[j, j] ** -0.5
-            sides = [side for side in (by, -by) if self.lower[j] <= theta[j] + side <= self.upper[j]]
-            rises = np.array([self._rise(here, theta, j, side) for side in sides])
+            sides = np.array([side for side in (by, -by) if self.lower[j] <= theta[j] + side <= self.upper[j]])
+            rises = np.array([self._there(theta, j, side) - before for side in sides])
             if len(sides) == 2:
                 information[j, j] = max(information[j, j], float(rises.mean()) / by**2)
-            if sides:
-                g[j] = float(np.mean((information[j, j] * np.square(sides) - rises) / sides)) / 2
+            if len(sides):
+                g[j] = _half_slope(information[j, j], sides, rises)
         return g, information
 
     def expected(self, here: Evidence, theta: np.ndarray) -> float:
@@ -284,6 +284,11 @@ def fit(
             problem, further = _beyond(problem, theta, *further, before)
         theta, here = further
     return _found(problem, theta, here)
+
+
+def _half_slope(curvature: float, by: np.ndarray, rises: np.ndarray) -> float:
+    """−½ the slope of a deviance that rises by so much (m,) at these distances (m,), less what it rises by as it is bent."""
+    return float(np.mean(curvature * by - rises / by)) / 2
 
 
 def _found(problem: Problem, theta: np.ndarray, here: Evidence) -> Fit:
