@@ -126,6 +126,7 @@ class Parameter(Quantity):
     known_to: float | None = None  # standard deviation of what is known of it beforehand, in place of the relative one
     among_chairs: float | None = None  # standard deviation from chair to chair, of a value that nobody gave
     estimated: bool = True  # False for an effect's constants, of which a fit only touches those that are `adjusted`
+    dry: bool = False  # of dry friction that may hold what it acts on, so that for a time no reading has a slope by it
     formerly: tuple[tuple[str, float], ...] = ()  # names, without the effect's, whose sum with these weights it has replaced
     mirror_given: bool = field(init=False, repr=False, compare=False)
 

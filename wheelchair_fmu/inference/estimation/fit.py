@@ -33,9 +33,6 @@ FURTHER = 3  # at most so many times, each twice as long
 AT_BOUND = 1e-3  # of a parameter's scale
 STEEPEST = 1e100  # slope in standard deviations per unit, of whose squares no computer loses count
 LEAST_SHARE = 0.2  # of a step that is tried
-# Dry friction of what hardly moves: where it holds, a filter expects nothing to happen, and that nothing does tells more of the
-# friction than readings' slopes by it. That takes several times as long.
-DRY = ("effect.caster_friction.M", "effect.caster_friction.rate", "caster.M")
 REACH = 4.0  # standard deviations of the prior; a value further off is no calibration but another chair
 
 
@@ -172,12 +169,18 @@ class Problem:
         return self.deviance(self.likelihood.evidence(self.likelihood.campaign.fit, self.values(trial)), trial)
 
     def led_slopes(self, here: Evidence, theta: np.ndarray, hold: Container[str]) -> tuple[np.ndarray, np.ndarray]:
-        """`gradient` (k,) and `information` (k, k); of what is `DRY` by the likelihood itself, from its deviance a standard
-        error to both sides, or to one beside a bound; with no way to go for what is to `hold`."""
+        """`gradient` (k,) and `information` (k, k); of dry friction by the likelihood itself, from its deviance a standard
+        error to both sides, or to one beside a bound; with no way to go for what is to `hold`.
+
+        Where friction holds, a filter expects nothing to happen, and that nothing does tells more of the friction than
+        readings' slopes by it. To ask takes several times as long.
+        """
         g, information = self.gradient(here.S, here.r, theta), self.information(here)
         before = self.deviance(here, theta)
-        for j in (j for j, name in enumerate(self.names) if name in DRY):
-            if self.names[j] in hold:
+        for j, name in enumerate(self.names):
+            if not self.likelihood.records[name].dry:
+                continue
+            if name in hold:
                 information[j, :], information[:, j], information[j, j], g[j] = 0.0, 0.0, 1.0, 0.0
                 continue
             by = information[j, j] ** -0.5
@@ -256,7 +259,7 @@ def fit(
     """The most likely values of `names`, from `start`; `here` is the evidence there, with sensitivities by `names`, if known.
 
     `rival` is the deviance of another model: one that falls too slowly to come up with it is not followed to its end. `most` is
-    how often all is linearised anew. What is dry friction, and of these names, stays where it is where forces lead the runs.
+    how often all is linearised anew. Where forces lead the runs, dry friction that is to `hold` stays where it is.
     Raises SimulationError where the model cannot be simulated at the start.
     """
     problem = Problem(likelihood, names)

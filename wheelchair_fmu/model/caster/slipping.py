@@ -62,6 +62,7 @@ PARAMETERS = (
         symbol="M_bearing",
         among_chairs=0.01,
         source="chosen: a clean ball bearing",
+        dry=True,
     ),
     Parameter(
         "caster.d",

@@ -19,6 +19,7 @@ FRICTION = Parameter(
     upper=5.0,
     symbol="M_s",
     source="chosen",
+    dry=True,
 )
 RATE = Parameter(
     "rate",
@@ -30,6 +31,7 @@ RATE = Parameter(
     symbol="M_s_rate",
     source="chosen: balls and grease yield before they slip",
     known_to=0.03,
+    dry=True,
 )
 
 
