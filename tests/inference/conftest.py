@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -19,12 +20,17 @@ def sample() -> Campaign:
     return read(ROOT / "examples" / "sample-campaign")
 
 
-def among(*effects: str):
-    """For tests of `chair`: one whose catalogue has these effects alone, and at night one with the whole catalogue, of which a
-    search takes several times as long."""
+def chairs(*effects: str) -> list[Any]:
+    """For parameters of tests: a chair whose catalogue has these effects alone, and at night one with the whole catalogue, of
+    which a search takes several times as long."""
     few = Variant(catalogue={effect: bundled()[effect] for effect in effects})
     whole = pytest.param(Variant(), id="whole catalogue", marks=pytest.mark.nightly)
-    return pytest.mark.parametrize("chair", [pytest.param(few, id="few effects"), whole])
+    return [pytest.param(few, id="few effects"), whole]
+
+
+def among(*effects: str):
+    """`chairs`, for tests of `chair`."""
+    return pytest.mark.parametrize("chair", chairs(*effects))
 
 
 def measured(name: str) -> Campaign:

@@ -282,6 +282,7 @@ def test_effects_that_explain_anything_only_together_are_found_together(heavy_ca
     found = heavy_casters
     assert "caster_inertia" in found.effects and {"caster_trail", "caster_inertia"} <= set(found.included)
     assert set(found.included) <= {"caster_trail", "caster_inertia", "caster_friction", "turn_slip"}
+    assert "turn_slip" not in found.effects and not found.ties, "it helps, and is not there"
     assert found.ladder[1].left > 2.5 > 1.3 > found.ladder[-1].left
     steps = [s.name[1:] for s in found.ladder[2:]]
     assert set(found.effects) <= set(steps) and tuple(steps) == found.included

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,34 +10,26 @@ from typer.testing import CliRunner
 
 from benchmarks.independent.campaigns import make
 from benchmarks.independent.hidden import usual
-from tests.inference.conftest import measured
+from tests.inference.conftest import chairs, measured
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.cli.main import app
 from wheelchair_fmu.contracts.own import load
 from wheelchair_fmu.inference.decision.diagnosis import Diagnosis
 from wheelchair_fmu.inference.decision.verdict import diagnose
-from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.generic import library, terms
 
-FEW = (
-    "caster_trail",
-    "caster_friction",
-    "aerodynamic_drag",
-    "rolling_resistance_asymmetry",
-    "scrub_torque",
-    "floor_cross_slope",
+AMONG = chairs(
+    "caster_trail", "caster_friction", "aerodynamic_drag", "rolling_resistance_asymmetry", "scrub_torque", "floor_cross_slope"
 )
-WHOLE = pytest.param(tuple(bundled()), id="whole catalogue", marks=pytest.mark.nightly)
 
 
-@pytest.fixture(scope="module", params=[pytest.param(FEW, id="few effects"), WHOLE])
+@pytest.fixture(scope="module", params=AMONG)
 def told(request, tmp_path_factory) -> tuple[Diagnosis, Path]:
     """What `wheelchair diagnose` found, and the folder of what it wrote."""
     campaign, folder, found = measured("open-09-outside").path, tmp_path_factory.mktemp("outside"), []
 
     def kept(campaign, chair, *words, **options) -> Diagnosis:
-        few = replace(chair, catalogue={e: r for e, r in chair.catalogue.items() if e in request.param})
-        found.append(diagnose(campaign, few, *words, **options))
+        found.append(diagnose(campaign, request.param, *words, **options))
         return found[0]
 
     with pytest.MonkeyPatch.context() as patched:

@@ -19,7 +19,6 @@ from wheelchair_fmu.inference.models.factory import ModelFactory
 from wheelchair_fmu.inference.models.models import Models
 from wheelchair_fmu.inference.preflight.timing import Late, by_model, by_signals, clocks, retimed, unlike_the_others
 from wheelchair_fmu.inference.search.beginning import begin, late_by_slopes
-from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
 
 
@@ -143,12 +142,15 @@ def test_what_only_the_final_model_tells_of_a_shift(sample, name, seconds, chair
 
 
 @pytest.mark.nightly
-def test_a_body_that_moves_with_each_stroke_is_no_clock(tmp_path):
+@among("stroke_motion", "push_force_delay", "rolling_resistance_asymmetry")
+def test_a_body_that_moves_with_each_stroke_is_no_clock(tmp_path, chair, request):
     """It is ahead of the hands, as pushes are that were recorded early; the runs without strokes have no share in it."""
-    few = ("stroke_motion", "push_force_delay", "rolling_resistance_asymmetry")
+    if "whole" in request.node.callspec.id:
+        reason = "its law leaves twice the noise, and among forces trunk_motion and push_force_delay are named beside it"
+        request.applymarker(pytest.mark.xfail(strict=True, reason=reason))
     campaign = read(make(tmp_path / "reaching", {"stroke_motion": {"reach": 0.03}}, seed=5))
     assert [n for n in campaign.runs[1].inputs if n.startswith("stroke.")] and campaign.runs[1].name == "straight-strokes"
-    found = diagnose(campaign, Variant(catalogue={effect: bundled()[effect] for effect in few}))
+    found = diagnose(campaign, chair)
     assert found.effects == ("stroke_motion",) and found.clocks == {}
     assert found.ladder[-1].heldout < 0.5 * found.ladder[1].heldout
 
