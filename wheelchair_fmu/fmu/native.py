@@ -15,6 +15,7 @@ from uuid import UUID
 
 from ..children import side_by_side
 from ..engine import compiler, objects
+from ..engine.cache import LEVELS
 from ..engine.source import CSRC
 from ..errors import BuildError
 from ..resources import FMU_SOURCES
@@ -115,9 +116,9 @@ def compile_library(face: Interface, texts: Mapping[str, str], platform: Platfor
 
 
 def _equations(text: str, platform: Platform) -> Path:
-    """The object of one law's equations."""
+    """The object of one law's equations, with as little optimising as in `engine.cache.LEVELS`, for the same reason."""
     whole = BEGINNING.format(linkage="") + text + BETWEEN
-    return objects.compiled("equations", for_oldest_libc(platform, whole), (), platform.command())
+    return objects.compiled("equations", for_oldest_libc(platform, whole), (LEVELS["model"],), platform.command())
 
 
 def archive(face: Interface) -> dict[str, bytes]:
