@@ -441,6 +441,10 @@ class Likelihood:
         """The same likelihood with runs that begin where evidence has found that they do."""
         return self.begun(begins_of(*found))
 
+    def beside(self, found: Evidence) -> Likelihood:
+        """The same likelihood with runs that are led from the paths on which evidence has them, without the same readings."""
+        return self.begun({e.run.name: replace(self.begins[e.run.name], start=e.start, path=e.path) for e in found.runs})
+
     def led(self, campaign: Campaign) -> Likelihood:
         """The same model and noise on other runs of the chair, each from where its first samples say, and linearised about the
         path on which forces that nobody recorded lead it, once its start is tuned."""
