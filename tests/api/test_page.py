@@ -6,9 +6,12 @@ import doctest
 import re
 from pathlib import Path
 
+import pytest
+
 PAGE = Path(__file__).parents[2] / "docs" / "python.md"
 
 
+@pytest.mark.nightly
 def test_the_page_does_what_it_shows(found, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     # The page reads another copy of the same campaign, and asks again for what made `found`.

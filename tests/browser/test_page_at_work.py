@@ -169,6 +169,7 @@ def test_a_wheel_that_is_lifted_or_pushed_beyond_friction_says_so(reader):
     page.wait_for_selector(".limits", state="hidden")
 
 
+@pytest.mark.nightly
 def test_the_motion_of_the_body_is_seen_where_it_was_recorded(browser, tmp_path):
     campaign = tmp_path / "campaign"
     shutil.copytree(SAMPLE, campaign)

@@ -80,6 +80,7 @@ def test_set_reaches_the_fmu_and_more_cornering_stiffness_tightens_the_turn(tmp_
     assert radius[2519] / radius[10076] < 1.08
 
 
+@pytest.mark.nightly
 def test_an_effect_with_a_state_is_built_in_when_set_names_it(tmp_path):
     done = wheelchair("simulate", "slalom", "--time", 1, "--set", "effect.relaxation_length.sigma=0.2", "-o", tmp_path)
     assert done.exit_code == 0, done.output

@@ -91,6 +91,7 @@ def test_a_mat_file_that_cannot_be_written_leaves_what_was_there(tmp_path):
     assert done.exit_code == 1 and (tmp_path / "full").read_text() == "kept"
 
 
+@pytest.mark.nightly
 def test_paper_writes_every_figure_and_the_table(tmp_path):
     done = wheelchair("paper", "--no-ranges", "-o", tmp_path)
     assert done.exit_code == 0 and "29 of 29 hold" in done.output

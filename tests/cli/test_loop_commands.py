@@ -73,7 +73,9 @@ def test_json_is_all_that_compare_prints_whatever_it_writes(brief, tmp_path):
     assert told["campaign"] == "sample-chair" and list(tmp_path.glob("*.csv"))
 
 
-@pytest.mark.parametrize("values", [{}, {"chair.m": 90.0, "effect.push_force_delay.tau": 0.02}])
+@pytest.mark.parametrize(
+    "values", [{}, pytest.param({"chair.m": 90.0, "effect.push_force_delay.tau": 0.02}, marks=pytest.mark.nightly)]
+)
 def test_compare_weighs_what_the_fmu_simulates(tmp_path, values):
     """By whatever a run sets, the FMU goes as the model does by which its errors are weighed."""
     measured = condensed(read(with_settings(Path(SAMPLE), tmp_path / "campaign")))

@@ -39,8 +39,9 @@ def stateful_apart(ids):
     ("case", "motion"),
     [
         *((case, motion) for case in ("base", "swivelling") for motion in ("slalom", "spin")),
-        ("effects", "slalom"),
-        pytest.param("effects", "spin", marks=pytest.mark.nightly),  # another model, of all effects, to compile
+        *(
+            pytest.param("effects", motion, marks=pytest.mark.nightly) for motion in ("slalom", "spin")
+        ),  # another model, of all effects, to compile
     ],
 )
 def test_by_every_parameter(case, motion):

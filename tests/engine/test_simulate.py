@@ -166,7 +166,10 @@ def test_what_would_take_hours_is_refused():
         simulator.run(t, w, tolerance=1e-30)
 
 
-@pytest.mark.parametrize(("name", "effects", "size"), [("plain", "none", 0), ("plain", "all", 1), ("bare", "all", 0)])
+@pytest.mark.parametrize(
+    ("name", "effects", "size"),
+    [("plain", "none", 0), pytest.param("plain", "all", 1, marks=pytest.mark.nightly), ("bare", "all", 0)],
+)
 def test_shorter_steps_are_the_step_on_a_level_floor_with_open_brakes(name, effects, size):
     """And the bare one, with all effects off besides."""
     rng = np.random.default_rng(4)

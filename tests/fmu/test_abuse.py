@@ -48,7 +48,8 @@ def _fuzzed(program: Path, facts: list[str], seeds: int, under: tuple[str, ...] 
 
 
 @pytest.mark.parametrize(
-    ("archives", "level"), [(("few", "few3"), "-O0"), pytest.param(("native", "native3"), "-O2", marks=pytest.mark.nightly)]
+    ("archives", "level"),
+    [pytest.param(*case, marks=pytest.mark.nightly) for case in ((("few", "few3"), "-O0"), (("native", "native3"), "-O2"))],
 )
 def test_random_calls_crash_nothing(archives, level, request, workshop):
     """The calls take no time, but compiling them does."""

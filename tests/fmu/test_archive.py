@@ -30,7 +30,15 @@ from .chair import FEW, Unpacked, chair
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize("flavour", ["native", "native3", "everything", "everything3", "in_python"])
+@pytest.mark.parametrize(
+    "flavour",
+    [
+        "native",
+        "native3",
+        *(pytest.param(all_effects, marks=pytest.mark.nightly) for all_effects in ("everything", "everything3")),
+        "in_python",
+    ],
+)
 def test_fmpy_finds_no_fault(flavour, request):
     assert problems(request.getfixturevalue(flavour).path) == []
 
@@ -291,7 +299,9 @@ def test_nothing_half_written_where_it_cannot_be(tmp_path):
 
 
 @pytest.mark.skipif(not find_spec("ziglang"), reason="ziglang is not installed: `pip install ziglang`")
-@pytest.mark.parametrize(("archive", "effects"), [("few", FEW), pytest.param("native", "default", marks=pytest.mark.nightly)])
+@pytest.mark.parametrize(
+    ("archive", "effects"), [pytest.param(*case, marks=pytest.mark.nightly) for case in (("few", FEW), ("native", "default"))]
+)
 def test_builds_with_zig_instead_of_a_system_compiler(archive, effects, request, tmp_path):
     unpacked: Unpacked = request.getfixturevalue(archive)
     code = (

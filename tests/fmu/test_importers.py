@@ -31,6 +31,7 @@ def _named(row: Row) -> str:
     return " ".join(row.key)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("row", [r for r in fmu_rows("2") if r.here and r.run == SLIDES], ids=_named)
 def test_wheels_whose_spin_is_a_state_slide_in_an_importer_as_in_the_engine(row, native, tmp_path: Path):
     case = cases(native.path, tmp_path)[SLIDES]

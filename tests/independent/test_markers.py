@@ -37,6 +37,7 @@ def test_a_point_that_is_given_is_where_the_marker_is_read(folder, tmp_path):
         assert after < 1.1 < 1.5 < before
 
 
+@pytest.mark.nightly
 @among("marker_offset", "gyro_scale", "toe_misalignment", "wheel_radius_error")
 def test_a_point_that_nobody_gave_is_found(folder, chair):
     found = diagnose(read(folder), chair)

@@ -40,6 +40,7 @@ def slippery(tmp_path_factory) -> Campaign:
     return read(make(folder, {"slipping_wheels": usual("slipping_wheels", 2.0)}, manoeuvres="strong", seed=1))
 
 
+@pytest.mark.nightly
 def test_runs_in_which_wheels_slipped_are_named_and_nothing_makes_up_for_them(slippery):
     found = diagnose(slippery, generic=library())
     (note,) = [n for n in found.notes if "slipped" in n]

@@ -101,6 +101,7 @@ def test_a_model_is_not_adequate_where_held_out_runs_have_what_no_fitted_one_sho
     assert found.to_fit in swung and as_json(found)["to_fit"] == found.to_fit
 
 
+@pytest.mark.nightly
 def test_nor_is_one_among_forces_that_nobody_recorded(tmp_path):
     """On an uneven floor, the yaw rate of two held-out runs swings by itself, by more than that floor does."""
     few = {effect: bundled()[effect] for effect in ("rolling_resistance_asymmetry", "aerodynamic_drag")}

@@ -87,6 +87,7 @@ def test_errors_of_scales_and_tape_are_no_effect(tmp_path):
     assert values["chair.t_r"].value == pytest.approx(true.t_r, abs=0.004)
 
 
+@pytest.mark.nightly
 def test_a_gyro_is_told_from_a_tread_that_is_a_little_off(tmp_path):
     """3 % of a gyro's scale is 16 mm of tread, which no tape excludes; but how wheel speeds and slips go together is not."""
     found = diagnose(read(make(tmp_path / "c", {"gyro_scale": {"k": 0.03}}, seed=1)))

@@ -166,6 +166,7 @@ def test_another_effect_may_overtake_what_was_found_first(tmp_path):
     assert stable.first["wheel_inertia"] > 0.9 > 0.1 > stable.first["push_force_gain"]
 
 
+@pytest.mark.nightly
 @among("toe_misalignment", "rolling_resistance_asymmetry")
 def test_toe_of_opposite_signs_is_found(tmp_path, chair):
     """Among all effects a small asymmetry of the drag does as well, of which every chair has some: large toe is named beside
@@ -214,6 +215,7 @@ def test_an_uneven_floor_is_nobodys_effect(tmp_path):
     assert 1.5 < found.unexplained.after.along < 3.5  # N, as 80 kg feel it
 
 
+@pytest.mark.nightly
 def test_forces_are_asked_for_once_most_is_left(tmp_path):
     """On an uneven floor no effect explains much: nobody searches for the rest in a model that lacks what is mainly missing."""
     few = {effect: bundled()[effect] for effect in ("rolling_resistance_asymmetry", "aerodynamic_drag")}
@@ -308,6 +310,7 @@ def test_what_a_later_effect_makes_needless_is_left_out(sample, sampled, chair, 
         assert step.name == other.name and step.heldout == pytest.approx(other.heldout, rel=0.005)
 
 
+@pytest.mark.nightly
 @among("rolling_resistance_asymmetry", "wheel_radius_error", "gyro_bias", "aerodynamic_drag")
 def test_what_is_small_may_help_and_is_not_named(tmp_path, chair):
     """A wheel that drags, and a radius that is wrong by less than anybody cares for, which the recordings show all the same."""

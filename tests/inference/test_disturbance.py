@@ -199,6 +199,33 @@ def test_values_among_unrecorded_forces_are_found_without_bias(sample, moment):
     assert np.abs(off).max() < 4 and np.abs(np.mean(off, axis=0)).max() < 3 / np.sqrt(len(off))
 
 
+def test_values_nearby_are_judged_from_the_path_that_is_known(sample):
+    """Where forces lead a run is found step by step; from the path that values nearby have it is the same as from none."""
+    rng, names = np.random.default_rng(1), ("chair.m", "resistance.f_r")
+    run = next(run for run in sample.runs if run.name == "straight-strokes")
+
+    def floor(run, without):
+        return wandering(rng, run.time, 3.0), wandering(rng, run.time, 0.3)
+
+    campaign = ridden(replace(sample, runs=(run,)), rng, floor)
+    noise = NoiseModel(campaign.noise, force=3.0, moment=0.3, mass=80.0)
+    likelihood = Likelihood(campaign, Variant(), noise, columns=names).led(moving(campaign))
+    here = likelihood.evidence(campaign.fit, {"chair.m": 80.0})
+    beside = likelihood.beside(here)
+    assert beside.begins[run.name].path is here.runs[0].path and likelihood.begins[run.name].path is None
+
+    def off(of: Likelihood, mass: float) -> float:
+        """By how much the deviance changes that is found for this mass, if it is asked again from where it led."""
+        found = of.evidence(campaign.fit, {"chair.m": mass})
+        again = of.beside(found).evidence(campaign.fit, {"chair.m": mass})
+        return abs(found.deviance - again.deviance)
+
+    assert off(beside, 80.0) < 0.1 and off(beside, 84.0) < 0.1
+    from_none, from_there = (of.evidence(campaign.fit, {"chair.m": 84.0}).deviance for of in (likelihood, beside))
+    assert from_there == pytest.approx(from_none, abs=0.5)
+
+
+@pytest.mark.nightly
 def test_dry_friction_of_casters_is_found_among_unrecorded_forces(sample):
     """Where it holds a caster no reading has a slope by it: by readings' slopes alone it came out at two thirds, in casters
     that let go over nearly twice the swivel rate."""
@@ -236,7 +263,7 @@ def test_a_body_that_answers_pushes_has_its_size_whatever_else_it_does(sample):
     assert found == pytest.approx([0.008] * len(found), rel=0.2) and np.mean(found) == pytest.approx(0.0088, rel=0.05)
 
 
-@pytest.mark.parametrize("f_r", [0.03, 0.05])
+@pytest.mark.parametrize("f_r", [0.03, pytest.param(0.05, marks=pytest.mark.nightly)])
 def test_a_model_that_stands_where_the_chair_rolls_needs_the_force_that_it_lacks_and_no_more(sample, f_r):
     """Its drag is some newtons too large. About where it stands no slope leads anywhere, and any force would do."""
     rng = np.random.default_rng(6)

@@ -46,6 +46,7 @@ def test_improve_finds_adds_and_then_finds_nothing(tmp_path):
     assert again.verdict in ("adequate", "cannot_see", "small")
 
 
+@pytest.mark.nightly
 def test_an_effect_that_nobody_needs_can_be_added_and_gains_nothing(sample):
     """Toe, which a screen looks at by sizes: none promises anything once the drag of the left wheel is in."""
     dragging = add(sample, Variant(), ["rolling_resistance_asymmetry"])

@@ -20,6 +20,7 @@ from wheelchair_fmu.model.variant import Variant
 from wheelchair_fmu.model.wheelchair import REGIMES
 
 
+@pytest.mark.nightly
 def test_a_diagnosis_by_windows_finds_the_same_and_says_so(sample):
     """Runs of 11 to 15 s are windows of their own; of these, most."""
     chosen = windows(sample, most=4500)

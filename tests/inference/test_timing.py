@@ -23,7 +23,13 @@ from wheelchair_fmu.model.variant import Variant
 
 
 @pytest.mark.parametrize(
-    ("name", "seconds"), [("random-steps", 1.3), ("coast-down", -0.05), ("slalom-quick", 0.1), ("holdout-random", 0.3)]
+    ("name", "seconds"),
+    [
+        pytest.param("random-steps", 1.3, marks=pytest.mark.nightly),
+        ("coast-down", -0.05),
+        ("slalom-quick", 0.1),
+        ("holdout-random", 0.3),
+    ],
 )
 def test_a_shifted_run_is_read_in_time(sample, name, seconds):
     begun = begin(Models.of(ModelFactory(with_shift(sample, Case(name, seconds)), Variant())))
@@ -36,6 +42,7 @@ def test_a_shifted_run_is_read_in_time(sample, name, seconds):
     assert [r.name for r in begun.models.campaign.runs] == [r.name for r in sample.runs]
 
 
+@pytest.mark.nightly
 def test_who_compares_reads_a_shifted_run_in_time(sample):
     as_it_is, shifted = (compared(c, Variant(), (), lambda words: None) for c in (sample, with_shift(sample, Case(*NIGHT[0]))))
     assert any(note.startswith(f"{NIGHT[0][0]}: its pushes were recorded") for note in shifted.notes)
@@ -134,7 +141,10 @@ def test_where_the_push_that_tells_a_shift_was_not_recorded_the_run_is_named(sam
 @among("rolling_resistance_asymmetry", "push_force_delay", "gyro_bias", "camber_misalignment")
 @pytest.mark.parametrize(
     ("name", "seconds"),
-    [("straight-strokes", 0.3), ("slalom-quick", 0.02), pytest.param("steady-right", 0.1, marks=pytest.mark.nightly)],
+    [
+        ("straight-strokes", 0.3),
+        *(pytest.param(*case, marks=pytest.mark.nightly) for case in (("slalom-quick", 0.02), ("steady-right", 0.1))),
+    ],
 )
 def test_what_only_the_final_model_tells_of_a_shift(sample, name, seconds, chair):
     """Strokes that are all alike, a slalom whose shift bends C_λ, and a turn that hides its shift behind the missing effect."""

@@ -110,17 +110,17 @@ def test_signs_of_print_are_those_of_the_keyboard():
     assert law("−q × u · 2").expression == law("-q * u * 2").expression
 
 
-def test_a_term_may_read_what_is_known_before_what_it_acts_on():
+@pytest.mark.parametrize("to", ["F_x", *(pytest.param(symbol, marks=pytest.mark.nightly) for symbol in ("delta", "N_f"))])
+def test_a_term_may_read_what_is_known_before_what_it_acts_on(to):
     """Places in the line say so: below its own it can be evaluated, from there on it is refused."""
     model = assemble()
     place, known = orders(model), vocabulary(model)
-    for to in ("F_x", "delta", "N_f"):
-        refused = []
-        for name in known:
-            part = name if known[name].size == 1 else f"{name}[0]"
-            try:
-                unit_of_q(f"q * {part}" if known[to].size == 1 or known[name].size == 1 else f"q * {name}", to)
-            except UsageError as error:
-                refused += [name] if "further down the line" in str(error) else []
-        assert set(refused) == {name for name in known if place[name] >= place[to]}, to
-        assert len(refused) > 20
+    refused = []
+    for name in known:
+        part = name if known[name].size == 1 else f"{name}[0]"
+        try:
+            unit_of_q(f"q * {part}" if known[to].size == 1 or known[name].size == 1 else f"q * {name}", to)
+        except UsageError as error:
+            refused += [name] if "further down the line" in str(error) else []
+    assert set(refused) == {name for name in known if place[name] >= place[to]}
+    assert len(refused) > 20

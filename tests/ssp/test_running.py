@@ -179,6 +179,7 @@ def two_chairs(altered, slalom):
     return path
 
 
+@pytest.mark.nightly
 def test_over_any_communication_step_the_error_is_of_first_order(two_chairs):
     """Hands and chair hear of one another one step late: a chair is off by no more than the way it does in one.
 
@@ -237,6 +238,7 @@ def test_a_recording_is_replayed_into_the_chair(tmp_path):
     assert trace["Chair.chair.psi"][-1] > 0.01  # the left hand was stronger: to the right
 
 
+@pytest.mark.nightly
 def test_a_variant_is_the_chair_with_its_laws_and_values(tmp_path):
     variant = Variant().with_values({"tyre.law": "magic_formula", "chair.m": 100.0, "effect.relaxation_length.sigma": 0.1})
     path = build("strokes", tmp_path / "variant.ssp", variant=variant)

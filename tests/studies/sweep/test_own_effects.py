@@ -44,7 +44,7 @@ def job_of(place: Path, **changes) -> Job:
     return Job(read_plan(place / "plan.toml", place / "effects"), **changes)
 
 
-@pytest.mark.parametrize("engine", ["kernel", "fmu"])
+@pytest.mark.parametrize("engine", ["kernel", pytest.param("fmu", marks=pytest.mark.nightly)])
 def test_a_drag_of_ones_own_slows_the_chair_as_it_says(place, engine):
     table = job_of(place, engine=engine).table(0).to_pandas()
     np.testing.assert_allclose(table.speed_end, np.exp(-table["effect.my_drag.q"] * 4 / 80), rtol=1e-5)
