@@ -102,7 +102,6 @@ def test_the_band_is_of_noise_and_of_what_fitted_values_are_uncertain_by(reader,
     assert page.evaluate("report.doubt()") is None
 
 
-@pytest.mark.nightly
 def test_what_a_run_sets_is_so_in_the_page(browser, tmp_path):
     """Starts and parameters of single runs, of which position was tracked too, with coloured noise of sensors and pushes:
     the same starts and errors as `Likelihood`."""

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 
 import pytest
 
 from benchmarks.independent.labs import NOISE
-from benchmarks.labs import CASTERS, GIVEN, drawn, imported, recorded
+from benchmarks.labs import GIVEN, drawn, imported, recorded
 from tests.browser.conftest import CHROMIUM, Reader, browser, driver, report_of  # noqa: F401 (two are fixtures)
 from tests.campaign.test_measurements import MEASUREMENTS
 from tests.campaign.test_measurements import folder as measured
@@ -27,12 +26,11 @@ WITHIN = 1.25  # times the best that a simulation reaches which knows what was h
 
 @pytest.fixture(scope="module", params=GIVEN)
 def found(request, tmp_path_factory):
-    """A lab's name, its diagnosis with all sizes that its protocol has, and its folder."""
+    """A lab's name, its diagnosis, and its folder."""
     if request.param == "lab-02":
         pytest.importorskip("openpyxl", reason="reading a workbook needs openpyxl")
     measured(request.param)
-    lab = recorded(MEASUREMENTS, request.param)
-    out = imported(replace(lab, sizes={**lab.sizes, **CASTERS}), tmp_path_factory.mktemp("lab") / request.param)
+    out = imported(recorded(MEASUREMENTS, request.param), tmp_path_factory.mktemp("lab") / request.param)
     return request.param, diagnose(read(out)), out
 
 

@@ -47,8 +47,7 @@ def test_sweep_writes_a_table_and_its_indices(tmp_path):
     assert again.exit_code == 0 and "already done by this plan" in again.stderr
 
 
-@pytest.mark.nightly
-@pytest.mark.parametrize("engine", ["kernel", "fmu"])
+@pytest.mark.parametrize("engine", ["kernel", pytest.param("fmu", marks=pytest.mark.nightly)])
 def test_the_rms_is_that_of_compare(tmp_path, engine):
     folder = tracked(with_settings(SAMPLE, tmp_path / "campaign"))
     (tmp_path / "plan.toml").write_text('[sweep]\ncampaign = "campaign"\n')

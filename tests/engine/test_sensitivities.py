@@ -39,9 +39,8 @@ def stateful_apart(ids):
     ("case", "motion"),
     [
         *((case, motion) for case in ("base", "swivelling") for motion in ("slalom", "spin")),
-        *(
-            pytest.param("effects", motion, marks=pytest.mark.nightly) for motion in ("slalom", "spin")
-        ),  # another model, of all effects, to compile
+        # another model, of all effects, to compile
+        *(pytest.param("effects", motion, marks=pytest.mark.nightly) for motion in ("slalom", "spin")),
     ],
 )
 def test_by_every_parameter(case, motion):

@@ -28,17 +28,10 @@ from wheelchair_fmu.quantities import ONE, Parameter
 from .chair import FEW, Unpacked, chair
 
 ROOT = Path(__file__).parents[2]
+EVERYTHING = [pytest.param(name, marks=pytest.mark.nightly) for name in ("everything", "everything3")]
 
 
-@pytest.mark.parametrize(
-    "flavour",
-    [
-        "native",
-        "native3",
-        *(pytest.param(all_effects, marks=pytest.mark.nightly) for all_effects in ("everything", "everything3")),
-        "in_python",
-    ],
-)
+@pytest.mark.parametrize("flavour", ["native", "native3", "in_python", *EVERYTHING])
 def test_fmpy_finds_no_fault(flavour, request):
     assert problems(request.getfixturevalue(flavour).path) == []
 
@@ -299,9 +292,7 @@ def test_nothing_half_written_where_it_cannot_be(tmp_path):
 
 
 @pytest.mark.skipif(not find_spec("ziglang"), reason="ziglang is not installed: `pip install ziglang`")
-@pytest.mark.parametrize(
-    ("archive", "effects"), [pytest.param(*case, marks=pytest.mark.nightly) for case in (("few", FEW), ("native", "default"))]
-)
+@pytest.mark.parametrize(("archive", "effects"), [("few", FEW), pytest.param("native", "default", marks=pytest.mark.nightly)])
 def test_builds_with_zig_instead_of_a_system_compiler(archive, effects, request, tmp_path):
     unpacked: Unpacked = request.getfixturevalue(archive)
     code = (

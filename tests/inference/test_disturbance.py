@@ -225,7 +225,6 @@ def test_values_nearby_are_judged_from_the_path_that_is_known(sample):
     assert from_there == pytest.approx(from_none, abs=0.5)
 
 
-@pytest.mark.nightly
 def test_dry_friction_of_casters_is_found_among_unrecorded_forces(sample):
     """Where it holds a caster no reading has a slope by it: by readings' slopes alone it came out at two thirds, in casters
     that let go over nearly twice the swivel rate."""

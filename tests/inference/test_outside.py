@@ -39,7 +39,6 @@ def told(request, tmp_path_factory) -> tuple[Diagnosis, Path]:
     return found[0], folder
 
 
-@pytest.mark.nightly
 def test_the_term_that_is_proposed_brings_the_error_to_the_floor(told, tmp_path):
     found, _ = told
     assert found.verdict == "outside" and found.proposal is not None

@@ -29,7 +29,6 @@ def aside(tmp_path_factory):
     return models, base
 
 
-@pytest.mark.nightly
 def test_a_fit_with_new_states_starts_its_runs_where_these_were(aside):
     """With casters that all start behind and pushes without errors, slopes lead to a trail of 3 cm, with more than twice the
     noise left. A descent that looks beyond a step, with runs that follow there, comes to the trail by itself."""

@@ -116,7 +116,7 @@ def compile_library(face: Interface, texts: Mapping[str, str], platform: Platfor
 
 
 def _equations(text: str, platform: Platform) -> Path:
-    """The object of one law's equations, with as little optimising as in `engine.cache.LEVELS`, for the same reason."""
+    """The object of one law's equations, optimised as little as those of the engine (see `engine.cache.LEVELS`)."""
     whole = BEGINNING.format(linkage="") + text + BETWEEN
     return objects.compiled("equations", for_oldest_libc(platform, whole), (LEVELS["model"],), platform.command())
 

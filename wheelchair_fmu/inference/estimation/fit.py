@@ -138,7 +138,7 @@ class Problem:
         """The same with runs that begin where evidence has found that they do."""
         return Problem(self.likelihood.continued(found), self.names)
 
-    def about(self, here: Evidence) -> Problem:
+    def beside(self, here: Evidence) -> Problem:
         """The same with runs that are led from the paths on which evidence has them: those of values nearby are close."""
         return Problem(self.likelihood.beside(here), self.names)
 
@@ -313,7 +313,7 @@ def _fit_led(problem: Problem, theta: np.ndarray, here: Evidence, most: int, hol
     """
     if not most:
         return _found(problem, theta, here)
-    problem = problem.about(here)
+    problem = problem.beside(here)
     (step, promised), share = problem.towards(theta, *problem.led_slopes(here, theta, hold)), 1.0
     for _ in range(most):
         if promised < STRAIGHT:
@@ -321,12 +321,12 @@ def _fit_led(problem: Problem, theta: np.ndarray, here: Evidence, most: int, hol
         to = problem.stepped(theta, share * step)
         try:
             there = problem.linearised(to)
-            beside = problem.about(there)
-            further, still = beside.towards(to, *beside.led_slopes(there, to, hold))
+            nearby = problem.beside(there)
+            further, still = nearby.towards(to, *nearby.led_slopes(there, to, hold))
         except SimulationError:
             still = math.inf
         if still < promised:
-            problem, theta, here, step, promised, share = beside, to, there, further, still, 1.0
+            problem, theta, here, step, promised, share = nearby, to, there, further, still, 1.0
         elif share > LEAST_SHARE:
             share /= 2
         else:

@@ -442,7 +442,8 @@ class Likelihood:
         return self.begun(begins_of(*found))
 
     def beside(self, found: Evidence) -> Likelihood:
-        """The same likelihood with runs that are led from the paths on which evidence has them, without the same readings."""
+        """The same likelihood with runs that are led from the paths on which evidence has them; which readings are not asked
+        stays as it was."""
         return self.begun({e.run.name: replace(self.begins[e.run.name], start=e.start, path=e.path) for e in found.runs})
 
     def led(self, campaign: Campaign) -> Likelihood:
