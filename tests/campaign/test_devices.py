@@ -127,6 +127,13 @@ def test_every_sample_stands_at_its_own_time(lab):
     assert [(c.device, c.sd, set(c.channels)) for c in run.clocks] == [("imu", 0.002, {"yaw_rate", "a_x"})]
 
 
+def test_an_offset_is_less_sure_at_a_clock_s_own_zero_where_nobody_knows_its_rate(lab):
+    """The middle of a file of 5 s is 2.5 s from there; two crystals differ by 50 µs in a second (ppm: 50)."""
+    assert [c.at_zero for c in read(lab).runs[0].clocks] == [pytest.approx(50e-6 * 2.5, rel=0.01)]
+    edited(lab, "sd = 0.002", "sd = 0.002, drift = 3e-5")
+    assert [c.at_zero for c in read(lab).runs[0].clocks] == [0.0]
+
+
 def test_markers_on_the_axle_say_nothing_of_the_centre_of_mass(lab):
     """How far it is before them is estimated: readings that held what was given would vouch for it."""
     campaigns = [read(lab)]

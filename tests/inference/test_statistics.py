@@ -468,6 +468,7 @@ def test_clocks_are_told_beside_the_one_that_they_are_held_against():
         Clock("left", NONE, NONE, 0.0, 0.3),
         Clock("right", NONE, NONE, 1e-3, 0.5),
     )
+    unsteady = (*clocks[:2], replace(clocks[2], at_zero=2e-3))
     (e,) = evidence([np.zeros((n, 1))], [np.zeros((n, 1, 0))], ()).runs
     e = replace(e, run=replace(e.run, clocks=clocks), start=dict.fromkeys(START, 0.0))
     names, seen = list(e.uncertain), 1e3 * np.cos(np.arange(n) / 7)
@@ -476,11 +477,15 @@ def test_clocks_are_told_beside_the_one_that_they_are_held_against():
     r, s = ((axes / np.sqrt(size)) @ (axes.T @ what) for what in (late * seen + white((n,), 3), seen))
     slopes = np.zeros((n, 1, len(names)))
     slopes[:, 0, names.index("clock.frame")] = s
-    found = told_clocks(Evidence((replace(e, r=r[:, None], start_S=slopes),), ()))["run 0"]
+    e = replace(e, r=r[:, None], start_S=slopes)
+    found = told_clocks(Evidence((e,), ()))["run 0"]
     assert list(found) == ["left", "right"]
     assert found["left"].seconds == pytest.approx(0.3 - late, abs=3 * found["left"].sd) and found["left"].sd < 1e-4
     assert found["right"].seconds - 0.5 == pytest.approx(found["left"].seconds - 0.3)
     assert found["right"].sd == pytest.approx(np.hypot(1e-3, found["left"].sd), rel=0.05)
+    at_zero = told_clocks(Evidence((replace(e, run=replace(e.run, clocks=unsteady)),), ()))["run 0"]
+    assert at_zero["left"] == found["left"] and at_zero["right"].seconds == found["right"].seconds
+    assert at_zero["right"].sd == pytest.approx(np.hypot(found["right"].sd, 2e-3))
 
 
 def test_no_runs_are_no_evidence():

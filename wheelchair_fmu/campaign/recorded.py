@@ -13,6 +13,7 @@ import numpy as np
 
 from .axes import to_sae
 from .channels import BY_NAME, CHANNEL_NAMES, INPUT_NAMES
+from .clocks.lag import CRYSTAL
 from .devices import clock
 from .document import Document, Entry
 from .draft import Draft, Readings, constants
@@ -147,6 +148,7 @@ class Recorded(Readings):
                 d.part.clock.sd,
                 d.part.clock.offset,
                 d is self.drafts[0],
+                _wander(d),
             )
             for d in self.drafts
             if d.part.clock.sd > 0 or self.drafts[0].part.clock.sd > 0
@@ -185,3 +187,11 @@ class Recorded(Readings):
 
 def _fmu_names(inputs: Sequence[str] | Mapping[str, np.ndarray]) -> frozenset[str]:
     return frozenset(BY_NAME[name].fmu for name in inputs)
+
+
+def _wander(draft: Draft) -> float:
+    """Standard deviation, in s, of how much further off a device's clock is at its own time 0 than in the middle of its file,
+    where nobody knows its rate."""
+    if draft.time is None or draft.part.clock.drift:
+        return 0.0
+    return CRYSTAL * abs(float(np.mean(draft.time)) - draft.part.clock.offset)

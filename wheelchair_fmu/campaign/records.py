@@ -17,7 +17,8 @@ from .series import began
 class Clock:
     """The clock of one device in one run: whose `channels` (by name) and `inputs` (by FMU name) it stamps, the standard
     deviation, in s, of what may be left of its offset, and the offset that its times have been given. The others' are beside
-    that of the `reference`."""
+    that of the `reference`. A run tells how far off a clock is on average: `at_zero` is the standard deviation, in s, of how
+    much further off it is at the device's own time 0, for a rate that nobody knows."""
 
     device: str
     channels: frozenset[str]
@@ -25,6 +26,7 @@ class Clock:
     sd: float
     offset: float = 0.0
     reference: bool = False
+    at_zero: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -166,8 +166,8 @@ def unlike_the_others(*evidence: Evidence) -> tuple[str, ...]:
 
 
 def clocks(*evidence: Evidence) -> dict[str, dict[str, Late]]:
-    """For each run whose devices' clocks are uncertain, and each of these, its offset as the readings have it, beside the
-    clock of the run's reference."""
+    """For each run whose devices' clocks are uncertain, and each of these, its offset at its own time 0, beside the clock of the
+    run's reference. Readings tell how far off it is on average; at time 0 it is off by as much, but for its rate."""
     found = {e.run.name: dict(_estimated(e)) for some in evidence for e in some.runs}
     return {run: of for run, of in found.items() if of}
 
@@ -176,7 +176,7 @@ def _estimated(e: RunEvidence) -> Iterator[tuple[str, Late]]:
     beside = [f"clock.{c.device}" for c in e.run.clocks if c.reference]
     for clock in (c for c in e.run.clocks if not c.reference):
         late, se = own_constant(e, f"clock.{clock.device}", *beside)
-        yield clock.device, Late(clock.offset + late, se)
+        yield clock.device, Late(clock.offset + late, float(np.hypot(se, clock.at_zero)))
 
 
 def _pushes(run: Run) -> dict[str, np.ndarray]:
