@@ -18,7 +18,7 @@
 #define HELD 1.0      /* and the sum of squares by which innovations may differ where slopes hold */
 #define MOMENT 1      /* of the forces that nobody recorded, the moment, */
 #define TREMOR 2      /* that of bumps, */
-#define SWINGS 4      /* and the first of those by which a body swings */
+#define SWINGS 5      /* and the first of those by which a body swings */
 #define SWEEPS 30     /* of Jacobi's rotations */
 
 static const double shares[] = {1.0, 0.5, 0.25, 0.1, 0.03}; /* of a step that are tried */

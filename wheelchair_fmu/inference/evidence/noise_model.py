@@ -24,13 +24,11 @@ FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten, or m,
 # s, of the third order by which the momentum of a rider's body swings: with each stroke, about once a second, and back, and
 # smoothly, as muscles pull; of second order it would tremble, and a slow force would seem likelier than a body
 SWUNG = (1 / 15, 1 / 10, 3 / 20)
-# of the way over which a floor's slope to the side is forgotten: its height's second order, α⁻¹ and β⁻¹
-RISES = (1 / 3, 2 / 3)
 PATCH = 0.05  # m over which a bump is forgotten that a wheel rolls over: as long as a tyre's contact patch
-# of the processes of `disturbance`, a force, a moment, the moment and the force of bumps, those of the body and those of a
-# floor, which are the body's,
-BODYS = np.repeat([False, True, False], [4, len(SWUNG), len(RISES)])
-PLACES = np.repeat([False, True, False, True], [1, 3, len(SWUNG), len(RISES)])  # those that a floor has in it,
+# of the processes of `disturbance`, a force, a moment, the moment and the force of bumps, a floor's, and those of the body,
+# which are the body's,
+BODYS = np.repeat([False, True], [5, len(SWUNG)])
+PLACES = np.repeat([False, True, False], [1, 4, len(SWUNG)])  # those that a floor has in it,
 FORCED = len(BODYS)  # how many there are, which of them is the moment, and which push along the heading
 MOMENT, ALONG = 1, (0, *range(3, FORCED))
 DIES_OUT = 0.6  # s in which a body's swing of 1.3 Hz and a fifth of the critical damping falls by e
@@ -46,7 +44,7 @@ class NoiseModel:
     ar: Mapping[str, float] = field(default_factory=dict)  # AR(1) coefficient from sample to sample
     force: float = 0.0  # N, standard deviation of what pushes the chair along its heading for long and nobody recorded,
     moment: float = 0.0  # N m, of what turns it,
-    floor: float = 0.0  # N, of what a floor that rises and falls again pushes along the heading,
+    floor: float = 0.0  # N, of what an uneven floor pushes along the heading,
     body: float = 0.0  # N s, of the momentum that a rider's body has against the chair, beside what was recorded of it,
     bumps: float = 0.0  # N, of what bumps push along the heading,
     tremor: float = 0.0  # N m, and of what they turn the chair with
@@ -138,28 +136,29 @@ def disturbance(
     swinging: np.ndarray | float = 1.0,
     speed: np.ndarray | float = 1.0,
 ) -> Disturbance:
-    """A force along the heading, a moment, the moment and the force of bumps, the processes by which a rider's body pushes, and
-    those of a floor, as changes of these inputs: of those from outside where they are among them, which no rider's body
-    answers, or else of both hands', on wheels `t_r` apart.
+    """A force along the heading, a moment, the moment and the force of bumps, that of an uneven floor, and the processes by
+    which a rider's body pushes, as changes of these inputs: of those from outside where they are among them, which no rider's
+    body answers, or else of both hands', on wheels `t_r` apart.
 
     `along` is how many times as large as in `noise_model` that is which acts along the heading, `swinging` times how much the
     body swings, `speed` (m/s) how fast the chair rolls, at each moment (n,) or throughout.
 
     A body pushes by −p', with p its momentum against the chair: a sum of processes of first order that one noise drives, and a
-    force without a mean. So does a floor, which rises and falls again: the slope along the way is what its height changes. The
-    slope to the side, which turns a chair, is alike for as far as the height is, so that both are forgotten together. A floor
-    is as it is in each place: who rolls slowly stays longer on a slope, and gains or loses the more by it. Bumps are shorter
-    than a chair, and push one wheel and not the other, so that they turn it as well.
+    force without a mean. A floor's slopes have one over the way of a run: the spectrum of heights of what is rolled on falls
+    with the square of the wave number (ISO 8608), so that slopes have all long waves alike. Those along the way and to the
+    side, which turn a chair, are forgotten together. A floor is as it is in each place: who rolls slowly stays longer on a
+    slope, and gains or loses the more by it. Bumps are shorter than a chair, and push one wheel and not the other, so that they
+    turn it as well.
     """
-    body, floor = _body_and_floor(noise_model)
+    body = _swing(noise_model.body, SWUNG)
     as_push, common = np.zeros((len(inputs), FORCED)), np.eye(FORCED)
-    common[np.ix_(BODYS, BODYS)], common[-len(RISES) :, -len(RISES) :] = body.together, floor.together
+    common[np.ix_(BODYS, BODYS)] = body.together
     shares = {EXTERNAL[0]: (1.0, 0.0), EXTERNAL[1]: (0.0, 1.0)}
     if not shares.keys() <= set(inputs):
         shares = {hand: (0.5, side / t_r) for hand, side in zip(HANDS, (1, -1), strict=True)}
     for name, (ahead, turning) in shares.items():
-        back = -along * ahead * np.sign([*body.rates, *floor.rates])
-        as_push[inputs.index(name)] = [along * ahead, turning, turning, along * ahead, *back]
+        back = -along * ahead * np.sign(body.rates)
+        as_push[inputs.index(name)] = [along * ahead, turning, turning, along * ahead, along * ahead, *back]
     return Disturbance(*strong_and_lasting(noise_model, swinging, speed), as_push, common)
 
 
@@ -167,21 +166,17 @@ def strong_and_lasting(
     noise_model: NoiseModel, swinging: np.ndarray | float = 1.0, speed: np.ndarray | float = 1.0
 ) -> tuple[np.ndarray, np.ndarray]:
     """Standard deviations of the processes of `disturbance`, and the times (s) over which each is forgotten, (d,) or (n, d)."""
-    body, floor = _body_and_floor(noise_model)
-    lasting = np.array([FORGOTTEN, noise_model.lasting, PATCH, PATCH, *body.lasting, *floor.lasting])  # s, or m
-    rates = np.abs([*body.rates, *floor.rates])
-    sd = np.array([noise_model.force, noise_model.moment, noise_model.tremor, noise_model.bumps, *rates])
+    body, place = _swing(noise_model.body, SWUNG), noise_model.lasting
+    lasting = np.array([FORGOTTEN, place, PATCH, PATCH, place, *body.lasting])  # s, or m
+    sizes = (noise_model.force, noise_model.moment, noise_model.tremor, noise_model.bumps, noise_model.floor)
+    sd = np.array([*sizes, *np.abs(body.rates)])
     seconds = np.where(PLACES, np.multiply.outer(1 / np.asarray(speed), lasting), lasting)
     return np.where(BODYS, np.multiply.outer(swinging, sd), sd), seconds
 
 
-def _body_and_floor(noise_model: NoiseModel) -> tuple[_Swing, _Swing]:
-    return _swing(noise_model.body, SWUNG), _rate(noise_model.floor, noise_model.lasting)
-
-
 class _Swing(NamedTuple):
-    """Processes of first order that one noise drives, whose sum is the rate of another: times (k,) in s, or ways in m, what one
-    standard deviation of each adds to that rate (k,), and their correlation (k, k)."""
+    """Processes of first order that one noise drives, whose sum is the rate of another: times (k,) in s, what one standard
+    deviation of each adds to that rate (k,), and their correlation (k, k)."""
 
     lasting: Sequence[float]
     rates: np.ndarray
@@ -196,12 +191,6 @@ def _swing(momentum: float, lasting: Sequence[float]) -> _Swing:
     together = 2 * np.sqrt(np.outer(T, T)) / np.add.outer(T, T)
     shares = T ** (len(T) - 1.5) / np.prod(apart, axis=1)  # partial fractions, in standard deviations of each process
     return _Swing(lasting, -momentum * shares / T / np.sqrt(shares @ together @ shares), together)
-
-
-def _rate(force: float, lasting: float) -> _Swing:
-    """Those whose sum is a force of this standard deviation (N), the rate of what is forgotten over `lasting` (m)."""
-    first, second = (lasting * share for share in RISES)
-    return _swing(force * np.sqrt(first * second), (first, second))
 
 
 def stroke(*runs: Run) -> float:

@@ -166,8 +166,8 @@ def unlike_the_others(*evidence: Evidence) -> tuple[str, ...]:
 
 
 def clocks(*evidence: Evidence) -> dict[str, dict[str, Late]]:
-    """For each run whose devices' clocks are uncertain, and each of these, its offset at its own time 0, beside the clock of the
-    run's reference. Readings tell how far off it is on average; at time 0 it is off by as much, but for its rate."""
+    """For each run whose devices' clocks are uncertain, and each of these, its offset at its own time 0, beside the clock of
+    the run's reference. Readings tell how far off it is on average; at time 0 it is as far off, but for its rate."""
     found = {e.run.name: dict(_estimated(e)) for some in evidence for e in some.runs}
     return {run: of for run, of in found.items() if of}
 
