@@ -79,6 +79,8 @@ def _made(name: str, suffix: str, make: Callable[[Path], object]) -> Path:
                     other.unlink(missing_ok=True)
             settle(beside, target)
     except OSError as error:
+        if isinstance(error.filename, str) and not Path(error.filename).is_relative_to(folder()):
+            raise  # of a file that somebody else keeps
         raise BuildError(
             f"{folder()}: cannot keep there what was compiled: {(error.strerror or str(error)).lower()}; make "
             "room, or set WHEELCHAIR_CACHE to another folder"
