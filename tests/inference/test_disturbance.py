@@ -13,7 +13,7 @@ from wheelchair_fmu.inference.estimation.fit import fit
 from wheelchair_fmu.inference.estimation.statistics import standard_errors
 from wheelchair_fmu.inference.evidence.disturbance import acting, strength
 from wheelchair_fmu.inference.evidence.evidence import Begin
-from wheelchair_fmu.inference.evidence.likelihood import Likelihood
+from wheelchair_fmu.inference.evidence.likelihood import HELD, STEPPED, Likelihood
 from wheelchair_fmu.inference.evidence.noise_model import ALONG, BODYS, FORCED, HANDS, PATCH, NoiseModel, disturbance, stroke
 from wheelchair_fmu.model.variant import Variant
 
@@ -241,6 +241,9 @@ def test_values_nearby_are_judged_from_the_path_that_is_known(sample):
     assert off(beside, 80.0) < 0.1 and off(beside, 84.0) < 0.1
     from_none, from_there = (of.evidence(campaign.fit, {"chair.m": 84.0}).deviance for of in (likelihood, beside))
     assert from_there == pytest.approx(from_none, abs=0.5)
+    ways = (likelihood.beside(here, goes) for goes in (STEPPED, HELD))
+    one_step, none = (way.evidence(campaign.fit, {"chair.m": 84.0}).deviance for way in ways)
+    assert one_step == pytest.approx(from_there, abs=0.1) and abs(none - from_there) > 0.5
 
 
 def test_dry_friction_of_casters_is_found_among_unrecorded_forces(sample):

@@ -31,6 +31,7 @@ from .noise_model import ALONG, FORCED, MOMENT, NoiseModel, disturbance, noise_o
 TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best sensor's noise
 BODY = frozenset(BY_NAME[name].fmu for name in BODY_NAMES)  # of the rider, which no logger of pushes records
 LONG = 30_000  # rows: five minutes at 100 Hz, some megabytes
+LED, HELD, STEPPED = 1, 0, -1  # how a run that is led goes on from its path: to where forces lead it, not at all, one step
 MASS = "chair.m"
 INERT = (MASS, "chair.I_z", "chair.b")  # what resists forces and moments
 
@@ -48,7 +49,7 @@ class Likelihood:
     that the campaign names as nuisances are parameters too, `offset.<channel>`; `records` has all by name. `columns` are
     the parameters that sensitivities may be asked by, all if not given; the start is among them in any case. One that does not
     derive is compiled without, and only runs evidence `again`. One that `leads` has runs that begin
-    where the chair rolls, each led along the forces that nobody recorded.
+    where the chair rolls, each led along the forces that nobody recorded, and going on so from the path that it is on (`goes`).
     """
 
     def __init__(
@@ -65,7 +66,7 @@ class Likelihood:
         wanted = None if columns is None else (*columns, *self.start_names)
         self.sensitivities = Sensitivities(self.variant, wanted if derives else (), driven(campaign).union(EXTERNAL))
         self.noise_model = noise_model or NoiseModel(campaign.noise)
-        self.leads = leads
+        self.leads, self.goes = leads, LED
         self.begins: Mapping[str, Begin] = {r.name: Begin(self.expected_start(r)) for r in campaign.runs}
         self.offsets = offsets_of(campaign)
         offsets = (Parameter(name, BY_NAME[c].unit, f"offset of {c}") for name, c in self.offsets.items())
@@ -207,7 +208,7 @@ class Likelihood:
 
         if self.leads:
             path = begins.path if self.noise_model.disturbed else None
-            found = self._evaluated(run, values, (), at, path, int(self.noise_model.disturbed))
+            found = self._evaluated(run, values, (), at, path, self.goes if self.noise_model.disturbed else HELD)
             if rounds:
                 path = found.path if self.noise_model.disturbed else np.zeros((len(run.time), FORCED))
                 begins = Begin({**start, **tuned(found)}, path)
@@ -441,10 +442,11 @@ class Likelihood:
         """The same likelihood with runs that begin where evidence has found that they do."""
         return self.begun(begins_of(*found))
 
-    def beside(self, found: Evidence) -> Likelihood:
-        """The same likelihood with runs that are led from the paths on which evidence has them; which readings are not asked
+    def beside(self, found: Evidence, goes: int = LED) -> Likelihood:
+        """The same likelihood with runs that go on so from the paths on which evidence has them; which readings are not asked
         stays as it was."""
-        return self.begun({e.run.name: replace(self.begins[e.run.name], start=e.start, path=e.path) for e in found.runs})
+        begins = {e.run.name: replace(self.begins[e.run.name], start=e.start, path=e.path) for e in found.runs}
+        return self._with(begins={**self.begins, **begins}, goes=goes)
 
     def led(self, campaign: Campaign) -> Likelihood:
         """The same model and noise on other runs of the chair, each from where its first samples say, and linearised about the
