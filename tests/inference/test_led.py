@@ -51,7 +51,7 @@ def unlikely(likelihood: Likelihood, e: RunEvidence, values: dict[str, float], p
     return sum_
 
 
-@pytest.mark.parametrize(("strong", "f_f", "share"), [(1.0, 0.026, 0.01), (3.0, 0.023, 0.03)])
+@pytest.mark.parametrize(("strong", "f_f", "share"), [(1.0, 0.026, 0.01), (1.0, 0.028, 0.01), (3.0, 0.023, 0.03)])
 def test_the_forces_that_lead_a_run_are_the_likeliest(campaign, strong, f_f, share):
     """Where casters swing round, slopes hold for much less than a whole step: one that is taken all the same leads anywhere,
     and to no end. At the likeliest forces readings and forces are as likely as innovations have them."""

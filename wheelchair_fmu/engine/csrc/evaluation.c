@@ -8,7 +8,7 @@
 #define SETTLED 0.01  /* and by which it may be off where readings want it */
 #define STROKE 0.03   /* s, either side: slopes of a recorded push are taken over this, as over a sample they are mostly noise */
 #define LITTLE 1e-3   /* standard deviations of a clock, over which readings' slopes are taken */
-#define MOST_STEPS 12 /* that lead a run along forces, or errors of its pushes, at most, */
+#define MOST_STEPS 40 /* that lead a run along forces, or errors of its pushes, at most, */
 #define FARTHEST 3.0  /* standard deviations of a force over which slopes hold, */
 #define ARRIVED 0.03  /* and of a step that leads nowhere else */
 #define GAINED 0.1    /* of -2 log probability, less than which no step is worth another */
