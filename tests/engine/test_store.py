@@ -175,7 +175,6 @@ def abandoned(place: Path, process: int, age: float) -> Path:
     return work
 
 
-@posix
 def test_a_file_that_is_missing_elsewhere_is_no_matter_of_room(place, tmp_path):
     def make(path: Path) -> None:
         path.write_bytes((tmp_path / "law.c").read_bytes())
@@ -185,6 +184,7 @@ def test_a_file_that_is_missing_elsewhere_is_no_matter_of_room(place, tmp_path):
     assert list(place.iterdir()) == []
 
 
+@posix
 def test_what_others_abandoned_is_swept_and_what_they_use_is_not(place):
     ended = subprocess.Popen([sys.executable, "-c", ""])
     ended.wait()

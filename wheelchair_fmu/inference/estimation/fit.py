@@ -164,13 +164,17 @@ class Problem:
         before, found = self.deviance(here, theta), np.zeros(len(theta))
         for j, curvature in enumerate(np.diag(self.information(here))):
             by = curvature**-0.5 if theta[j] + curvature**-0.5 <= self.upper[j] else -(curvature**-0.5)
-            found[j] = _half_slope(curvature, np.array([by]), np.array([self._there(theta, j, by) - before]))
+            rise = self._there(theta + by * self._only(j)) - before
+            found[j] = _half_slope(curvature, np.array([by]), np.array([rise]))
         return found
 
-    def _there(self, theta: np.ndarray, j: int, by: float) -> float:
-        """The deviance where one value is so much larger."""
-        trial = theta + by * (np.arange(len(theta)) == j)
-        return self.deviance(self.likelihood.evidence(self.likelihood.campaign.fit, self.values(trial)), trial)
+    def _there(self, theta: np.ndarray) -> float:
+        """The deviance at values without slopes."""
+        return self.deviance(self.likelihood.evidence(self.likelihood.campaign.fit, self.values(theta)), theta)
+
+    def _only(self, j: int) -> np.ndarray:
+        """1 for one value, and 0 for all others (k,)."""
+        return np.eye(len(self.names))[j]
 
     def led_slopes(self, here: Evidence, theta: np.ndarray, hold: Container[str]) -> tuple[np.ndarray, np.ndarray]:
         """`gradient` (k,) and `information` (k, k); of dry friction by the likelihood itself, from its deviance a standard
@@ -183,16 +187,17 @@ class Problem:
         """
         g, information = self.gradient(here.S, here.r, theta), self.information(here)
         dry = [j for j, name in enumerate(self.names) if self.likelihood.records[name].dry]
-        free = [j for j in dry if self.names[j] not in hold]
-        stepped = self.beside(here, STEPPED)
-        before = stepped._there(theta, 0, 0.0) if free else math.nan
-        for j in dry:
-            if j not in free:
-                information[j, :], information[:, j], information[j, j], g[j] = 0.0, 0.0, 1.0, 0.0
-                continue
+        asked = [j for j in dry if self.names[j] not in hold]
+        for j in set(dry).difference(asked):
+            information[j, :], information[:, j], information[j, j], g[j] = 0.0, 0.0, 1.0, 0.0
+        if not asked:
+            return g, information
+        nearby = self.beside(here, STEPPED)
+        before = nearby._there(theta)
+        for j in asked:
             by = information[j, j] ** -0.5
             sides = np.array([side for side in (by, -by) if self.lower[j] <= theta[j] + side <= self.upper[j]])
-            rises = np.array([stepped._there(theta, j, side) - before for side in sides])
+            rises = np.array([nearby._there(theta + side * self._only(j)) - before for side in sides])
             if len(sides) == 2:
                 information[j, j] = max(information[j, j], float(rises.mean()) / by**2)
             if len(sides):

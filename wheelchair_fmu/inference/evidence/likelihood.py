@@ -446,7 +446,7 @@ class Likelihood:
         """The same likelihood with runs that go on so from the paths on which evidence has them; which readings are not asked
         stays as it was."""
         begins = {e.run.name: replace(self.begins[e.run.name], start=e.start, path=e.path) for e in found.runs}
-        return self._with(begins={**self.begins, **begins}, goes=goes)
+        return self.begun(begins)._with(goes=goes)
 
     def led(self, campaign: Campaign) -> Likelihood:
         """The same model and noise on other runs of the chair, each from where its first samples say, and linearised about the
