@@ -2,6 +2,8 @@
 what a file's tests share is made once."""
 
 import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy: its threads would spin beside those of the other workers
 from typing import Any
 
 import pytest

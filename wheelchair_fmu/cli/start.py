@@ -8,6 +8,7 @@ import sys
 
 def main(words: list[str] | None = None) -> None:
     """Run the command line, or these words of one, and exit with its code."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # cores are for runs, beside which NumPy's threads would only spin
     try:
         from .main import main as run  # half a second, in which Ctrl-C may come
 
