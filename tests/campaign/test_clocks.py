@@ -10,6 +10,7 @@ from wheelchair_fmu.campaign.clocks import Signal, alike, offsets
 from wheelchair_fmu.campaign.clocks.lag import summits
 from wheelchair_fmu.campaign.clocks.network import _errors
 from wheelchair_fmu.campaign.clocks.scatter import long_run
+from wheelchair_fmu.campaign.syncing import RunClocks
 
 from .riding import coloured, ride, strokes
 
@@ -129,6 +130,18 @@ def test_drift_is_told_where_the_record_is_long_and_left_alone_where_it_is_short
     assert long.drift == pytest.approx(120e-6, abs=4 * long.drift_se) and long.drift_se < 30e-6
     assert long.offset == pytest.approx(0.4, abs=4 * long.se)
     assert short.drift == 0.0
+
+
+def test_an_offset_beside_which_no_drift_is_written_is_right_in_the_middle():
+    """It was the offset at the clock's zero, so that all of the run was off by what half of it adds up to."""
+    rng, seconds, drift = np.random.default_rng(11), 70.0, 40e-6
+    truth = ride(rng, 80)
+    one = recorded(rng, truth, "a", ["u"], 50, 0.0, seconds)
+    clock = offsets(one + recorded(rng, truth, "b", ["u"], 50, 0.4, seconds, drift=drift))["b"]
+    assert 0 < abs(clock.drift) < 3 * clock.drift_se
+    written = RunClocks(None, "a", {"b": clock}, middles={"b": seconds / 2}).sure["b"]
+    assert "drift" not in written
+    assert written["offset"] == pytest.approx(0.4 + drift * seconds / 2, abs=1e-3)
 
 
 @pytest.mark.parametrize("levels", [2, 3, 10])

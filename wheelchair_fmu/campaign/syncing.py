@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -17,23 +17,28 @@ from .recorded import PUSHES_CLOCK, Recorded
 
 CURE = f"give clocks = {{ {PUSHES_CLOCK} = … }} in the run if you know which it is"
 PLACES = 5  # decimals of a second that are written
-LONGEST = 300.0  # s of a run of one file that are looked at
 DRIFTS = 3.0  # standard errors from which a drift is written
+LONGEST = 300.0  # s of a run of one file that are looked at
 
 
 @dataclass(frozen=True)
 class RunClocks:
-    """What was found of one run: a clock for each device but the first, whose times the others are brought to."""
+    """What was found of one run: a clock for each device but the first, whose times the others are brought to; `middles` are
+    by device those of its file times (s)."""
 
     run: Recorded
     reference: str
     clocks: Mapping[str, Clock | Shift]
     shared: float = 0.0  # s, standard error of the reference's own clock, in which all others' are the same
+    middles: Mapping[str, float] = field(default_factory=dict)
 
     def seconds(self, device: str) -> float:
-        """What to add to a device's times; 0 for the one that the others are brought to, NaN where nobody knows."""
+        """What to add to a device's times; 0 for the one that the others are brought to, NaN where nobody knows. Beside a drift
+        that is left out, it is what is right in the middle."""
         clock = self.clocks.get(device)
-        return 0.0 if clock is None else clock.seconds if isinstance(clock, Shift) else clock.offset
+        if clock is None or isinstance(clock, Shift):
+            return clock.seconds if clock else 0.0
+        return clock.offset if _drifts(clock) else clock.offset + clock.drift * self.middles.get(device, 0.0)
 
     def why(self, device: str) -> str:
         """In words: what told it, or what is missing."""
@@ -52,10 +57,15 @@ class RunClocks:
                 continue
             se = clock.own if isinstance(clock, Clock) else clock.se
             found[device] = {"offset": round(self.seconds(device), PLACES), "sd": round(se, PLACES)}
-            if isinstance(clock, Clock) and abs(clock.drift) > DRIFTS * clock.drift_se:
+            if isinstance(clock, Clock) and _drifts(clock):
                 found[device]["drift"] = float(f"{clock.drift:.3g}")
         shared = round(self.shared, PLACES)
         return ({self.reference: {"offset": 0.0, "sd": shared}} if found and shared else {}) | found
+
+
+def _drifts(clock: Clock) -> bool:
+    """Is it known to?"""
+    return abs(clock.drift) > DRIFTS * clock.drift_se
 
 
 def signals(run: Recorded) -> Iterator[Signal]:
@@ -108,10 +118,12 @@ def find(runs: tuple[Recorded, ...], aside: Mapping[str, Sequence[Signal]] = {})
     found = []
     for run in (r for r in runs if len(r.drafts) > 1):
         reference = run.drafts[0].part.device.name
-        known = offsets([*signals(run), *aside.get(run.name, ())], reference=reference)
+        seen = [*signals(run), *aside.get(run.name, ())]
+        known = offsets(seen, reference=reference)
         others = {d: c for d, c in known.items() if d != reference}
         shared = known[reference].own if reference in known else 0.0
-        found.append(RunClocks(run, reference, others, shared))
+        middles = {s.device: float(np.mean(s.time)) for s in seen}
+        found.append(RunClocks(run, reference, others, shared, middles))
     alone = {str(i): tuple(map(_beginning, signals(r))) for i, r in enumerate(runs) if len(r.drafts) == 1}
     for i, shift in odd_ones_out(alone).items():
         found.append(RunClocks(runs[int(i)], "readings", {PUSHES_CLOCK: shift}))
