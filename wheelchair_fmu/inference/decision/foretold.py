@@ -20,10 +20,10 @@ PLAIN = 2.0  # times a sensor's noise, from which there is something to foretell
 WORSE = 1.1  # times an error: a start that is off within what readings say of it changes one by less
 
 
-def on_led_runs(step: Step, values: Mapping[str, float], led: Models) -> Step:
-    """A step of a search on whole runs, with the errors that its `values` leave where the chair rolls, as those of all further
-    steps are of a search that is `led`; whitened it stays as it is."""
-    campaign, likelihood = led.campaign, led.likelihood()
+def on_led_runs(step: Step, values: Mapping[str, float], led: Models, effects: Sequence[str] = ()) -> Step:
+    """A step of a search on whole runs, with the errors that its `values` leave, of a model with these effects, where the chair
+    rolls, as those of all further steps are of a search that is `led`; whitened it stays as it is."""
+    campaign, likelihood = led.campaign, led.likelihood(effects)
     try:
         fitted, held = (channel_errors(likelihood.evidence(runs, values)) for runs in (campaign.fit, campaign.holdout))
     except SimulationError:  # it goes another way than any force could lead it: so its errors are of whole runs
@@ -75,21 +75,21 @@ def raised(ladder: Sequence[Step]) -> list[str]:
     ]
 
 
-def worse(calibrated: Step, last: Step) -> bool:
-    """Does a model foretell runs that were held out clearly worse than the calibrated one, over all channels: by the geometric
-    mean of its errors over those?"""
-    told = [(before.rms, after.rms) for _, before, after in _by_channel(calibrated, last) if before.rms > 0 and after.rms > 0]
+def worse(other: Step, last: Step) -> bool:
+    """Does a model foretell runs that were held out clearly worse than another one, over all channels: by the geometric mean of
+    its errors over those?"""
+    told = [(before.rms, after.rms) for _, before, after in _by_channel(other, last) if before.rms > 0 and after.rms > 0]
     return bool(told) and float(np.mean([np.log(after / before) for before, after in told])) > np.log(WORSE)
 
 
-def _by_channel(calibrated: Step, last: Step) -> list[tuple[str, ChannelError, ChannelError]]:
+def _by_channel(other: Step, last: Step) -> list[tuple[str, ChannelError, ChannelError]]:
     """Each channel with its errors on held-out runs by both, but for one that is further off by chance alone."""
-    before, after = (pooled(step.heldout_errors.values()) for step in (calibrated, last))
-    return [(c, before[c], e) for c, e in after.items() if c in before and not _drifted(c, calibrated, last)]
+    before, after = (pooled(step.heldout_errors.values()) for step in (other, last))
+    return [(c, before[c], e) for c, e in after.items() if c in before and not _drifted(c, other, last)]
 
 
-def _drifted(channel: str, calibrated: Step, last: Step) -> bool:
+def _drifted(channel: str, other: Step, last: Step) -> bool:
     """Is a position or heading further off by chance alone? What pushes a chair a little adds up there without end, and by what
     each reading adds to those before it the last model is not worse."""
-    before, after = (step.heldout_whitened.get(channel, np.nan) for step in (calibrated, last))
+    before, after = (step.heldout_whitened.get(channel, np.nan) for step in (other, last))
     return BY_NAME[channel].drifts and not after > before

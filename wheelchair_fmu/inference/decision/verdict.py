@@ -37,7 +37,7 @@ from .among_forces import led, left, needed, staircase
 from .decide import Facts, decide, instead_of_small, slight
 from .diagnosis import Diagnosis, deciding
 from .experiment import Experiment, reveal, separate
-from .foretold import remarks
+from .foretold import on_led_runs, remarks, worse
 from .intervals import allowance_of, intervals_of, intervals_of_rivals
 from .leftover import leftover, prepare, settled
 from .strain import of_another_chair, strained_values
@@ -145,16 +145,25 @@ def _among_forces(
 def _with_forces(found: Diagnosis, tried: _Among | None, among: Callable[[Diagnosis, tuple[str, ...]], _Among]) -> Diagnosis:
     """The diagnosis, with the force that its model lacks. Where much is left that no effect explains, the search `among` such
     forces is what counts: its estimates are not bent by what is left, be it nobody's effect or a law that is not known. But
-    a term that does what no effect does says more than forces do. `tried` is what came of that search, where it was made."""
+    a term that does what no effect does says more than forces do, and so does a model that foretells more without them. `tried`
+    is what came of that search, where it was made."""
     if found.verdict == "outside" and found.ladder[-1].left >= found.models.policy.a_little:
         tried = tried or among(found, found.heard)
-        if best := tried.whole or (None if found.proposal else tried.better):
+        if best := tried.whole or (None if found.proposal or _outdone(tried, found) else tried.better):
             return best
         if tried.before.fall:
             rest = tried.found.unexplained if tried.found else left(found.models, found.included, found.top, tried.before)
             return replace(found, unexplained=rest)
     before = tried.before if tried else needed(found.models, (), found.rounds[0].fit)[0]
     return replace(found, unexplained=Unexplained(before, needed(found.models, found.included, found.top)[0], ()))
+
+
+def _outdone(tried: _Among, found: Diagnosis) -> bool:
+    """Does the last model of a search among forces foretell held-out runs worse than that of the one without?"""
+    if not (among := tried.better):
+        return False
+    without = on_led_runs(found.ladder[-1], found.top.values, among.models, found.included)
+    return worse(without, among.ladder[-1])
 
 
 def _concluded(
