@@ -116,7 +116,7 @@ def led(fails: bool = False) -> Some:
             raise SimulationError("beyond all numbers")
         return evidence([np.full((5, 1), values["off"])] * len(runs), [np.zeros((5, 1, 0))] * len(runs), ())
 
-    return Some(campaign=Some(fit=(1, 2), holdout=(3,)), likelihood=lambda: Some(evidence=errors))
+    return Some(campaign=Some(fit=(1, 2), holdout=(3,)), likelihood=lambda effects: Some(evidence=errors))
 
 
 def test_the_calibrated_model_is_held_against_the_readings_of_the_others():
