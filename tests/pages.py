@@ -16,6 +16,7 @@ from wheelchair_fmu.cli.main import app
 ROOT = Path(__file__).parents[1]
 BLOCK = re.compile(r"`([\w/]+\.py)`:\n\n```python\n(.*?)```", re.DOTALL)
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+STEP = re.compile(r"^  (\+?\w[\w ]*\w) +([\d.]+) +([\d.]+)$", re.MULTILINE)
 PARTS = ("laws", "channels", "formats", "manoeuvres")  # of a configuration
 
 
@@ -57,23 +58,31 @@ def its_test_passes(name: str, folder: Path) -> None:
 
 
 def shown_commands(name: str) -> list[tuple[str, str]]:
-    """Each command that a page shows behind "$ ", with what stands below it up to the next one."""
-    blocks = re.findall(r"^```(?:console)?\n(\$ .*?)^```", page(name), re.DOTALL | re.MULTILINE)
+    """Each command that a page shows behind "$ ", on one line, with what stands below it up to the next one."""
+    blocks = re.findall(r"^```(?:console)?\n(\$ .*?)^```", page(name).replace("\\\n", " "), re.DOTALL | re.MULTILINE)
     entries = (entry for block in blocks for entry in block[2:].split("\n$ "))
     return [(command.split("   #")[0].strip(), shown) for command, _, shown in (e.partition("\n") for e in entries)]
 
 
-def told_by(command: str, folder: Path) -> str:
-    """What a command of a page prints, in the folder; figures are not waited for."""
+def shown_steps(name: str) -> list[tuple[str, str, str]]:
+    """Each step of the staircase that a page shows, with its errors on fitted and on held-out runs."""
+    return STEP.findall(page(name))
+
+
+def told_by(command: str, folder: Path, code: int | None = None) -> str:
+    """What a command of a page prints, in the folder; figures are not waited for. `code` is what `wheelchair` has to end with,
+    if that matters."""
     words = [word for word in shlex.split(command) if word != "--show-plot"]
     if words[0] == "wheelchair":
-        return CliRunner().invoke(app, words[1:], catch_exceptions=False).output
+        done = CliRunner().invoke(app, words[1:], catch_exceptions=False)
+        assert code in (None, done.exit_code), (command, done.output)
+        return done.output
     if words[0] == "python":
         words = [sys.executable, str(ROOT / words[1]), *words[2:]]
     programs = os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))
-    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, env={**os.environ, "PATH": programs})
-    assert done.returncode == 0, (command, done.stdout, done.stderr)
-    return done.stdout
+    ended = subprocess.run(words, cwd=folder, capture_output=True, text=True, env={**os.environ, "PATH": programs})
+    assert ended.returncode == 0, (command, ended.stdout, ended.stderr)
+    return ended.stdout
 
 
 def agrees(shown: str, told: str) -> list[str]:
