@@ -133,7 +133,7 @@ def test_drift_is_told_where_the_record_is_long_and_left_alone_where_it_is_short
 
 
 def test_an_offset_beside_which_no_drift_is_written_is_right_in_the_middle():
-    """It was the offset at the clock's zero, so that all of the run was off by what half of it adds up to."""
+    """Without its drift, the offset at a clock's zero puts all of the run off by what the drift adds up to until its middle."""
     rng, seconds, drift = np.random.default_rng(11), 70.0, 40e-6
     truth = ride(rng, 80)
     one = recorded(rng, truth, "a", ["u"], 50, 0.0, seconds)

@@ -33,8 +33,8 @@ class RunClocks:
     middles: Mapping[str, float] = field(default_factory=dict)
 
     def seconds(self, device: str) -> float:
-        """What to add to a device's times; 0 for the one that the others are brought to, NaN where nobody knows. Beside a drift
-        that is left out, it is what is right in the middle."""
+        """What to add to a device's times; 0 for the one that the others are brought to, NaN where nobody knows. Where a drift
+        is too unsure to be written, it is what is right in the middle of the run."""
         clock = self.clocks.get(device)
         if clock is None or isinstance(clock, Shift):
             return clock.seconds if clock else 0.0
@@ -64,7 +64,7 @@ class RunClocks:
 
 
 def _drifts(clock: Clock) -> bool:
-    """Is it known to?"""
+    """Is a clock surely faster or slower than the reference's?"""
     return abs(clock.drift) > DRIFTS * clock.drift_se
 
 
