@@ -207,6 +207,12 @@ def test_the_noise_of_a_speed_made_from_an_angle_is_known():
             "recording 2 (imu): at = [110, 40] is more than 1.2 m from the centre of mass, off any chair; write it in m",
         ),
         ("cameras = -0.2 }", "camera = -0.2 }", "run 1: clocks has 'camera', of which it has no file; did you mean 'cameras'?"),
+        (
+            "sd = 0.002",
+            "drift = 40",
+            "run 1: the clock of imu has drift = 40, but no clock gains so much; give it in s per s: 40e-6 for 40 parts per m",
+        ),
+        ("sd = 0.002", "drift = true", "run 1: the clock of imu has drift = True; give a number"),
         ("sd = 0.002", "sdev = 0.002", "run 1: the clock of imu has no key 'sdev'; did you mean 'sd'?"),
         ("sign = -1", "sign = 2", "[columns] a_x: sign = 2; give 1 or -1"),
         ('"LHUB"', '"LHIP"', "no column 'LHIP.z' (nor 'LHIP_z') for the marker axle_l"),

@@ -100,6 +100,12 @@ def test_pushes_that_a_clock_moves_out_of_the_run_are_said(campaign):
     assert said == "run a.csv: clocks.pushes moves the pushes by 60 s, out of a run of 1.99 s; give it in s"
 
 
+def test_a_drift_between_columns_of_one_file_changes_nothing_and_is_said(campaign):
+    runs = RUNS.replace('role = "fit"', 'role = "fit"\nclocks = { pushes = { offset = 0.02, drift = 4e-5 } }')
+    (said,) = told(campaign, "the drift of pushes", runs=runs)
+    assert said.endswith("the drift of pushes changes nothing: they stand in the same file as the readings; leave it out")
+
+
 def test_more_rider_than_chair_and_rider_is_said(campaign):
     (said,) = told(campaign, "[rider]", head=HEAD + "[rider]\nm = 80.0\n")
     assert said.endswith(

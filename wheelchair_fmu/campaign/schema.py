@@ -98,10 +98,10 @@ RUN = TableRecord(
             "clocks",
             "table",
             "For each device what to add to its times so that all are alike; or a table with offset, sd (the standard "
-            "deviation of what may be left of it, by this device's own clock) and drift (s per s). The first device of "
-            "`files` has offset 0, and with an sd its own error counts once for all others. In a run of one file, `pushes` is "
-            "its record of pushes. "
-            "`wheelchair sync` writes them.",
+            "deviation of what may be left of it, by this device's own clock) and drift (s per s, 40e-6 for 40 parts per "
+            "million). The first device of `files` has offset 0, and with an sd its own error counts once for all others. In a "
+            "run of one file, `pushes` is its record of pushes, in which a drift changes nothing. `wheelchair sync` writes "
+            "them.",
             unit="s",
             default="0",
             example="clocks = { imu = { offset = 0.412, sd = 0.002 } }",

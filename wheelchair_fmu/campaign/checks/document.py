@@ -34,6 +34,8 @@ Known = Mapping[str, tuple[float, float]]
 ROLES = ("fit", "holdout")
 OFF = f"is more than {FARTHEST:g} m from the centre of mass, off any chair"
 CURES_OF_KINDS = {"point": "give two numbers, [x, y] in m"}
+CLOCK_KEYS = ("offset", "sd", "drift")
+FASTEST = 0.1  # s/s; the oscillators inside inertial sensors are off by some hundredths at most
 MOST_KEYS = 1000  # of a table; all parameters together are some hundred
 
 
@@ -157,27 +159,33 @@ def bad_files(doc: Document, known: Known | None) -> Iterator[Fault]:
                 yield doc.fault(
                     "run.files", f"{entry.title}: the file of {name} is {file!r}", "put its name in quotes", entry.place
                 )
-        clocks = entry.table("files") or {PUSHES_CLOCK: ""}
+
+
+def bad_clocks(doc: Document, known: Known | None) -> Iterator[Fault]:
+    for entry in doc.entries:
+        files = entry.table("files")
         for name, stands in entry.table("clocks").items():
-            if name not in clocks:
+            if name not in (files or (PUSHES_CLOCK,)):
                 fact = f"{entry.title}: clocks has {name!r}, of which it has no file"
-                yield doc.fault("run.clocks", fact, suggestion(name, clocks), entry.place)
-            values = stands.items() if isinstance(stands, Mapping) else [("offset", stands)]
-            for key, value in values:
-                if key not in ("offset", "sd", "drift"):
-                    yield doc.fault(
-                        "run.clocks",
-                        f"{entry.title}: the clock of {name} has no key {key!r}",
-                        suggestion(key, ("offset", "sd", "drift")),
-                        entry.place,
-                    )
-                elif number(value) is None or (key == "sd" and (number(value) or 0) < 0):
-                    yield doc.fault(
-                        "run.clocks",
-                        f"{entry.title}: the clock of {name} has {key} = {value!r}",
-                        "give a number in s" if key != "drift" else "give a number",
-                        entry.place,
-                    )
+                yield doc.fault("run.clocks", fact, suggestion(name, files or (PUSHES_CLOCK,)), entry.place)
+            given = stands if isinstance(stands, Mapping) else {"offset": stands}
+            for fact, cure in _of_a_clock(given):
+                yield doc.fault("run.clocks", f"{entry.title}: the clock of {name} has {fact}", cure, entry.place)
+            if not files and number(given.get("drift")):
+                fact = f"{entry.title}: the drift of {name} changes nothing: they stand in the same file as the readings"
+                yield doc.fault("run.clocks", fact, "leave it out", entry.place, WARNING)
+
+
+def _of_a_clock(given: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """What is wrong in how a clock stands, and what to do about it."""
+    for key, value in given.items():
+        told = number(value)
+        if key not in CLOCK_KEYS:
+            yield f"no key {key!r}", suggestion(key, CLOCK_KEYS)
+        elif told is None or (key == "sd" and told < 0):
+            yield f"{key} = {value!r}", "give a number in s" if key != "drift" else "give a number"
+        elif key == "drift" and abs(told) > FASTEST:
+            yield f"drift = {value!r}, but no clock gains so much", "give it in s per s: 40e-6 for 40 parts per million"
 
 
 def bad_point(doc: Document, known: Known | None) -> Iterator[Fault]:
@@ -490,6 +498,7 @@ DOCUMENT_CHECKS: tuple[Callable[[Document, Known | None], Iterator[Fault]], ...]
     bad_recording,
     bad_markers,
     bad_files,
+    bad_clocks,
     bad_point,
     no_file,
     missing_file,
