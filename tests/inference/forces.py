@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -13,8 +14,10 @@ from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.evidence.noise_model import FORGOTTEN, HANDS
 from wheelchair_fmu.model.variant import Variant
 
-T_R, B = 0.55, 0.2
-Forces = Callable[[Run, dict[str, np.ndarray]], tuple[np.ndarray, np.ndarray]]  # of a run and its results without: F, M (n,)
+T_R, B, MASS = 0.55, 0.2, 80.0
+CHAIR = {"chair.t_r": T_R, "chair.b": B, "chair.m": MASS}
+# of a run and its results without: F, M (n,), and what accelerometers do not feel of that, by channel, if there is any
+Forces = Callable[[Run, dict[str, np.ndarray]], tuple[Any, ...]]
 
 
 def rolled(run: Run, without: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -68,6 +71,17 @@ def floor(rng: np.random.Generator, slope: float, length: float = 0.4) -> Callab
     return slopes
 
 
+def uneven(g_x: np.ndarray, g_y: np.ndarray) -> tuple[Any, ...]:
+    """The forces of a floor by gravity (n,) along the heading and to the left."""
+    return MASS * g_x, MASS * B * g_y, {"a_x": g_x, "a_y": g_y}
+
+
+def without_accelerometers(campaign: Campaign) -> Campaign:
+    """The campaign of a chair that has none."""
+    runs = (replace(r, channels={c: v for c, v in r.channels.items() if c not in ("a_x", "a_y")}) for r in campaign.runs)
+    return replace(campaign, runs=tuple(runs))
+
+
 def ridden(
     campaign: Campaign, rng: np.random.Generator, forces: Forces, chair: Variant = Variant(), values: Mapping[str, float] = {}
 ) -> Campaign:
@@ -77,10 +91,14 @@ def ridden(
     for run in campaign.runs:
         start = likelihood.begins[run.name].start
         without = dict(zip(names, likelihood._simulated(run, values, start)[0].T, strict=True))
-        F, M = forces(run, without)
+        F, M, *gravity = forces(run, without)
+        unfelt = gravity[0] if gravity else {}
         felt = dict(zip(EXTERNAL, (F, M), strict=True))
         channels, _, true = likelihood.readings(replace(run, inputs={**run.inputs, **felt}), values, start)
-        read = {c: v + rng.normal(0, campaign.noise[c], len(v)) for c, v in zip(channels, true.T, strict=True)}
+        noise = {
+            c: rng.normal(0, campaign.noise[c], len(v)) - unfelt.get(c, 0.0) for c, v in zip(channels, true.T, strict=True)
+        }
+        read = {c: v + noise[c] for c, v in zip(channels, true.T, strict=True)}
         record = {n: w + rng.normal(0, 0.4, len(w)) if n in HANDS else w for n, w in run.inputs.items()}
         runs.append(replace(run, inputs=record, channels=read))
     return replace(campaign, runs=tuple(runs))

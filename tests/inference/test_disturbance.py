@@ -14,10 +14,21 @@ from wheelchair_fmu.inference.estimation.statistics import standard_errors
 from wheelchair_fmu.inference.evidence.disturbance import acting, strength
 from wheelchair_fmu.inference.evidence.evidence import Begin
 from wheelchair_fmu.inference.evidence.likelihood import HELD, STEPPED, Likelihood
-from wheelchair_fmu.inference.evidence.noise_model import ALONG, BODYS, FORCED, HANDS, PATCH, NoiseModel, disturbance, stroke
+from wheelchair_fmu.inference.evidence.noise_model import (
+    ACROSS,
+    ALONG,
+    BODYS,
+    FLOOR,
+    FORCED,
+    HANDS,
+    PATCH,
+    NoiseModel,
+    disturbance,
+    stroke,
+)
 from wheelchair_fmu.model.variant import Variant
 
-from .forces import T_R, B, floor, pushing, ridden, rolled, swinging, wandering
+from .forces import CHAIR, MASS, T_R, B, floor, pushing, ridden, rolled, swinging, uneven, wandering, without_accelerometers
 
 
 @pytest.mark.parametrize(("force", "moment"), [(3.0, 0.5), (0.0, 0.0)])
@@ -26,7 +37,7 @@ def test_the_force_that_was_put_in_comes_out(sample, force, moment):
     campaign = ridden(
         sample, rng, lambda run, without: (wandering(rng, run.time, force), wandering(rng, rolled(run, without), moment))
     )
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR)
     assert found.along == pytest.approx(force, rel=0.15, abs=0.15)
     assert found.moment == pytest.approx(moment, rel=0.15, abs=0.03)
     noise = found.put_into(Likelihood(campaign, Variant()).noise_model)
@@ -35,37 +46,85 @@ def test_the_force_that_was_put_in_comes_out(sample, force, moment):
 
 
 def test_what_turns_a_chair_counts_as_a_floor_that_is_as_steep_along_the_way(sample):
-    """And nothing else is found there."""
+    """Where no accelerometer tells the two apart; and nothing else is found there."""
     rng = np.random.default_rng(5)
     campaign = ridden(sample, rng, lambda run, without: (0 * run.time, wandering(rng, rolled(run, without), 0.4)))
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
+    campaign = without_accelerometers(campaign)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR)
     assert found.moment == pytest.approx(0.4, rel=0.15) and found.floor == pytest.approx(found.moment / B)
     assert found.force < 0.15 and found.body < 0.15
+
+
+@pytest.mark.parametrize("share", [0.0, 1.0])
+def test_an_accelerometer_tells_the_pull_of_a_floor_from_what_else_turns_a_chair(sample, share):
+    """It feels no gravity along the floor. Taken for a push that it feels, a floor came out at six tenths."""
+    rng, g = np.random.default_rng(14), 0.03
+
+    def pushes(run, without):
+        way = rolled(run, without)
+        along, aside = (wandering(rng, way, g, 0.6) for _ in range(2))
+        return uneven(along, aside) if share else (0 * along, MASS * B * aside)
+
+    campaign = ridden(sample, rng, pushes)
+    evidence = Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ())
+    found = strength(evidence, CHAIR)
+    assert found.moment == pytest.approx(MASS * B * g, rel=0.12) and found.share == pytest.approx(share, abs=0.35)
+    assert found.floor == pytest.approx(share * MASS * g, abs=0.7) and found.force < 0.3
+    noise = found.put_into(Likelihood(campaign, Variant()).noise_model)
+    whole = Likelihood(campaign, Variant(), noise).evidence(campaign.runs, {}, ())
+    for channel in ("a_x", "a_y"):
+        r = np.concatenate([e.r[:, e.channels.index(channel)] for e in whole.runs])
+        assert float(np.mean(r**2)) == pytest.approx(1, abs=0.06)
+
+
+@pytest.mark.parametrize("heading", [0.0, 2.2])
+def test_a_floors_forces_do_what_the_models_own_floor_does(sample, heading):
+    """To the chair, and to what its accelerometers read, once it rolls as it does: the pull to the side acts as a moment, and
+    moves the tyres sideways by nothing at first."""
+    run = next(run for run in sample.runs if run.name == "straight-strokes")
+    noise = NoiseModel(sample.noise, floor=1.0, lever=B, mass=MASS)
+    fall, there = (0.004, -0.003), np.ones(len(run.time))
+    sloping = {f"floor.slope_{axis}": angle * there for axis, angle in zip("xy", fall, strict=True)}
+    plain, true = (replace(run, inputs={**run.inputs, **given}) for given in ({}, sloping))
+    likelihood = Likelihood(replace(sample, runs=(plain, true)), Variant(), noise)._with(leads=True)
+    start = {**likelihood.begins[run.name].start, "start.psi": heading}
+    names = likelihood.sensitivities.results
+    psi = likelihood._simulated(true, {}, start)[0][:, names.index("chair.psi")]
+    g_x, g_y = 9.81 * (fall[0] * np.cos(psi) + fall[1] * np.sin(psi)), 9.81 * (fall[1] * np.cos(psi) - fall[0] * np.sin(psi))
+    path = np.zeros((len(psi), FORCED))
+    path[:, FLOOR], path[:, ACROSS] = MASS * g_x, MASS * B * g_y
+    without, own = (likelihood.readings(one, {}, start)[2] for one in (plain, true))
+    led, settled = likelihood._simulated(plain, {}, start, path)[1], run.time > 0.5
+    moved = np.abs(own - without)[settled].max(axis=0)
+    np.testing.assert_array_less(np.abs(led - own)[settled].max(axis=0), [0.01, 0.01, 0.002, 1e-4, 0.002])
+    assert (moved[:3] > [0.3, 0.3, 0.01]).all()
+    assert max(np.abs(g_x).max(), np.abs(g_y).max()) > 0.03, "which a push would have shown"
 
 
 def test_a_floor_is_forgotten_as_soon_as_the_chair_is_off_it(sample):
     """Slopes that are alike over 0.6 m, however fast it rolls."""
     rng = np.random.default_rng(11)
     campaign = ridden(sample, rng, lambda run, without: (0 * run.time, wandering(rng, rolled(run, without), 0.4, 0.6)))
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR)
     assert found.lasting == pytest.approx(0.6, rel=0.25) and found.moment == pytest.approx(0.4, rel=0.15)
 
 
 def test_an_uneven_floor_pushes_along_as_much_as_it_turns_the_chair(sample):
     """A height of which nothing but its slopes and its length is known; a body moves on it, too."""
-    rng, slope, swings, weight = np.random.default_rng(21), 0.004, 2.0, 80.0 * 9.81
+    rng, slope, swings, weight = np.random.default_rng(21), 0.004, 2.0, MASS * 9.81
     slopes, true, usual = floor(rng, slope), [], stroke(*sample.runs)
 
     def pushes(run, without):
         along, aside = slopes(*(without[name] for name in ("sensor.x", "sensor.y", "sensor.yaw")))
         true.append((along, aside))
         body = np.gradient(swinging(rng, run.time, swings, pushing(run) / usual), run.time)
-        return -weight * along - body, weight * B * aside
+        pulls, turns, gravity = uneven(-9.81 * along, 9.81 * aside)
+        return pulls - body, turns, gravity
 
     campaign = ridden(sample, rng, pushes)
     force, moment = weight * np.std(np.concatenate(true, axis=1), axis=1) * (1, B)
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
-    assert found.moment == pytest.approx(moment, rel=0.2) and found.along == pytest.approx(force, rel=0.3)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR)
+    assert found.moment == pytest.approx(moment, rel=0.1) and found.along == pytest.approx(force, rel=0.1)
     assert found.body == pytest.approx(swings, rel=0.25)
 
 
@@ -81,7 +140,7 @@ def test_bumps_under_one_wheel_or_the_other_are_told_from_slopes(sample, slow):
         return left + right, T_R / 2 * (left - right) + wandering(rng, way, slow)
 
     campaign = ridden(sample, rng, pushes)
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR)
     assert found.tremor == pytest.approx(bump * T_R / np.sqrt(2), rel=0.15)
     assert found.bumps == pytest.approx(bump * np.sqrt(2), rel=0.15)
     assert found.moment == pytest.approx(slow, rel=0.25, abs=0.1) and found.force < 1.0 and found.body < 0.3
@@ -97,7 +156,7 @@ def test_a_body_is_told_from_a_floor_by_how_it_pushes_back(sample):
         return wandering(rng, run.time, 1.0) - np.gradient(body, run.time), 0 * run.time
 
     campaign = ridden(sample, rng, pushes)
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR)
     assert found.body == pytest.approx(swings, rel=0.25)
     assert found.force < 2.5 and found.moment < 0.1
 
@@ -113,9 +172,11 @@ def test_a_body_pushes_without_a_mean():
     assert np.allclose(unknown.as_push[0, BODYS], unknown.as_push[1, BODYS]), "along the heading"
 
 
-def test_what_a_floor_falls_over_all_the_way_is_no_drag(sample):
+@pytest.mark.parametrize("has_accelerometers", [False, True])
+def test_what_a_floor_falls_over_all_the_way_is_no_drag(sample, has_accelerometers):
     """Slopes along the way have all long waves, and a mean over a run of some metres. As slopes of a height that comes back
-    they had none, and the drag of both pairs of wheels was eleven standard errors off."""
+    they had none, and the drag of both pairs of wheels was eleven standard errors off. Accelerometers feel drag and no
+    slope."""
     names, way, off = ("resistance.f_r", "resistance.f_f"), 0.4, []
     few = replace(sample, runs=tuple(r for r in sample.runs if r.name in ("coast-down", "straight-strokes", "random-steps")))
     for seed in range(30, 36):
@@ -123,17 +184,18 @@ def test_what_a_floor_falls_over_all_the_way_is_no_drag(sample):
 
         def slopes(run, without, rng=rng):
             at = rolled(run, without)
-            return wandering(rng, at, 2.5, way), wandering(rng, at, 2.5 * B, way)
+            return uneven(*(wandering(rng, at, 2.5 / MASS, way) for _ in range(2)))
 
         campaign = ridden(few, rng, slopes)
-        noise = NoiseModel(campaign.noise, floor=2.5, moment=2.5 * B, lasting=way, mass=80.0)
+        campaign = campaign if has_accelerometers else without_accelerometers(campaign)
+        noise = NoiseModel(campaign.noise, floor=2.5, lever=B, lasting=way, mass=MASS)
         likelihood = Likelihood(campaign, Variant(), noise, columns=names).led(moving(campaign))
         true = likelihood.chair({})
         found = fit(likelihood, names, {n: true[n] for n in names})
-        loads = 80.0 * 9.81 * np.array([true["chair.a"], true["chair.b"]]) / (true["chair.a"] + true["chair.b"])
+        loads = MASS * 9.81 * np.array([true["chair.a"], true["chair.b"]]) / (true["chair.a"] + true["chair.b"])
         se = np.sqrt(loads @ found.covariance @ loads)  # N
         off.append(loads @ [found.values[n] - true[n] for n in names] / se)
-        assert 0.1 < se < 0.6
+        assert (0.03 if has_accelerometers else 0.1) < se < (0.1 if has_accelerometers else 0.6)
     assert np.sqrt(np.mean(np.square(off))) < 1.7
 
 
@@ -145,7 +207,7 @@ def test_who_pushes_moves_and_who_rolls_sits_still(sample):
         return -np.gradient(swinging(rng, run.time, swings, pushing(run) / usual), run.time), 0 * run.time
 
     campaign = ridden(sample, rng, pushes)
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), T_R, B)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR)
     assert found.body == pytest.approx(swings, rel=0.15) and found.along < 0.5
     known = found.put_into(NoiseModel(campaign.noise))
     for run in campaign.runs:
@@ -292,7 +354,7 @@ def test_a_model_that_stands_where_the_chair_rolls_needs_the_force_that_it_lacks
     found, evidence = acting(likelihood, wrong)
     assert 3.0 < found.force < 7.0 and found.moment == pytest.approx(0.5, rel=0.1)
     assert float(np.sqrt(np.mean(evidence.r**2))) == pytest.approx(1, abs=0.03)
-    assert strength(likelihood.evidence(campaign.fit, wrong, ()), T_R, B).force > 100, "or nobody would need the way it went"
+    assert strength(likelihood.evidence(campaign.fit, wrong, ()), CHAIR).force > 100, "or nobody would need the way it went"
 
 
 def test_a_run_that_begins_in_mid_stroke_is_foretold_at_the_speed_of_chair_and_body(sample):
@@ -328,7 +390,7 @@ def test_who_rolls_slowly_gains_or_loses_more_speed_by_a_floor():
     speed = np.array([0.5, 1.0, 2.0])
     floor_ = disturbance(NoiseModel({}, floor=5.0, lasting=0.5), HANDS, T_R, speed=speed)
     (at,) = np.flatnonzero(floor_.sd)
-    assert at in ALONG and not BODYS[at]
+    assert at == FLOOR and at in ALONG and not BODYS[at]
     np.testing.assert_allclose(forgotten := floor_.lasting[:, at], 0.5 / speed)
     in_each_metre = 2 * floor_.sd[at] ** 2 * forgotten / speed
     np.testing.assert_allclose(in_each_metre * speed**2, in_each_metre[1])

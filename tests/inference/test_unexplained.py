@@ -16,14 +16,14 @@ from wheelchair_fmu.inference.residual.unexplained import CONSTANT, Missing, Ord
 from wheelchair_fmu.model.effects import bundled
 from wheelchair_fmu.model.variant import Variant
 
-from .forces import T_R, B, ridden, wandering
+from .forces import CHAIR, ridden, wandering
 
 
 def left_of(campaign):
     """What the chair of the sample lacks on a campaign, as it is given."""
     likelihood = Likelihood(campaign, Variant())
     evidence = likelihood.evidence(campaign.fit, {}, ())
-    needed = strength(evidence, T_R, B)
+    needed = strength(evidence, CHAIR)
     return unexplained(likelihood, Fit((), {}, np.zeros((0, 0)), evidence, 0.0, np.zeros((0, 0))), needed, needed, evidence)
 
 

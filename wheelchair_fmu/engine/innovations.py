@@ -39,7 +39,10 @@ class NoiseRecord(ctypes.Structure):
     _fields_ = (
         *((name, ctypes.c_int) for name in ("nq", "nz", "nd")),
         *((name, ctypes.c_void_p) for name in ("time", "pushes", "which", "push_sd", "push_ar", "push_step")),
-        *((name, ctypes.c_void_p) for name in ("sd", "ar", "step", "unknown_sd", "lasting", "together", "as_push")),
+        *(
+            (name, ctypes.c_void_p)
+            for name in ("sd", "ar", "step", "unknown_sd", "lasting", "together", "as_push", "as_reading")
+        ),
     )
 
 
@@ -71,12 +74,14 @@ class Disturbance:
     """Forces that nobody recorded: each a first-order Gauss–Markov process with a standard deviation (d,) and a time (d,) in s
     over which it is forgotten, either of them (n, d) where that changes from moment to moment. `as_push` (nq, d) says as what
     change of the recorded pushes one unit of each acts, `common` (d, d) how they are correlated at one moment: two that one
-    white noise drives, without a mean, have 2 √(T₁ T₂) / (T₁ + T₂). Without it, each is on its own."""
+    white noise drives, without a mean, have 2 √(T₁ T₂) / (T₁ + T₂). Without it, each is on its own. `as_reading` (nz, d) is
+    what a unit of each adds to each reading besides what it does to the chair: nothing, without it."""
 
     sd: np.ndarray
     lasting: np.ndarray
     as_push: np.ndarray
     common: np.ndarray | None = None
+    as_reading: np.ndarray | None = None
 
     @property
     def count(self) -> int:
@@ -334,6 +339,7 @@ def noise_arrays(time: np.ndarray, noise: Noise, step: np.ndarray, unknown: Dist
         "lasting": np.broadcast_to(forces.lasting, (len(time), forces.count)),
         "together": np.eye(forces.count) if forces.common is None else forces.common,
         "as_push": forces.as_push,
+        "as_reading": np.zeros((len(noise.readings), forces.count)) if forces.as_reading is None else forces.as_reading,
     }
     return {name: np.ascontiguousarray(a, float) for name, a in arrays.items()}
 

@@ -12,8 +12,10 @@ import numpy as np
 from .innovations import Whitener
 
 
-def smoothed(filter_: Whitener, residual: np.ndarray, start_mean: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Posterior mean and standard deviation (n, d) of a filter's disturbances, in their units.
+def smoothed(
+    filter_: Whitener, residual: np.ndarray, start_mean: np.ndarray, sums: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Posterior mean and standard deviation (n, d) of a filter's disturbances, in their units, or of `sums` (k, d) of them.
 
     `residual` (n, nz) is measured less simulated, `start_mean` (nx,) where the true start is expected, less the simulated one.
     """
@@ -42,13 +44,15 @@ def smoothed(filter_: Whitener, residual: np.ndarray, start_mean: np.ndarray) ->
         seen.append((H, back_H, new, kept))
         x, P = x + gain @ new, kept @ P @ kept.T  # which stays positive where readings are all but exact (Bucy and Joseph 1968)
     there = slice(nx + filter_.recorded, nx + nq)
-    mean, sd = np.empty((n, nq - filter_.recorded)), np.empty((n, nq - filter_.recorded))
+    sums = np.eye(nq - filter_.recorded) if sums is None else sums
+    mean, sd = np.empty((n, len(sums))), np.empty((n, len(sums)))
     back, Back = np.zeros(whole), np.zeros((whole, whole))
     for i in range(n - 1, -1, -1):
         (x, P, F), (H, back_H, new, kept) = before[i], seen[i]
         back, Back = kept.T @ back - back_H @ new, kept.T @ Back @ kept + back_H @ H
-        mean[i] = (x - P @ back)[there]
-        sd[i] = np.sqrt(np.maximum(np.diag(P[there, there] - P[there] @ Back @ P[:, there]), 0.0))
+        mean[i] = sums @ (x - P @ back)[there]
+        left = P[there, there] - P[there] @ Back @ P[:, there]
+        sd[i] = np.sqrt(np.maximum(np.einsum("ki,ij,kj->k", sums, left, sums), 0.0))
         back, Back = F.T @ back, F.T @ Back @ F
     return mean, sd
 

@@ -19,7 +19,7 @@ from ..inference.estimation.statistics import finite
 from ..inference.evidence.initial_state import CASTERS, START, TUNING, prior_start, start_sd, starts_of
 from ..inference.evidence.likelihood import BODY, TOLERANCE, driven
 from ..inference.evidence.local import BaselineError, ClockError, Local, locals_of
-from ..inference.evidence.noise_model import BODYS, PLACES, NoiseModel, disturbance, noise_of, pushes_of
+from ..inference.evidence.noise_model import BODYS, GRAVITY, PLACES, NoiseModel, disturbance, noise_of, pushes_of
 from ..inference.explain.landscape import landscape
 from ..inference.models.factory import ModelFactory
 from ..inference.models.models import Models
@@ -109,11 +109,14 @@ def _forces(colour: NoiseModel) -> dict[str, Any] | None:
     floor's, which are forgotten sooner by as much as a run has `pace`."""
     if not colour.disturbed:
         return None
-    found = disturbance(colour, EXTERNAL)
-    assert found.common is not None
+    felt = tuple(GRAVITY)
+    found = disturbance(colour, EXTERNAL, readings=felt)
+    assert found.common is not None and found.as_reading is not None
     as_push = dict(zip(EXTERNAL, found.as_push.tolist(), strict=True))
     sizes = {"sd": found.sd.tolist(), "body": BODYS.tolist(), "places": PLACES.tolist()}
-    return {**sizes, "lasting": found.lasting.tolist(), "together": found.common.tolist(), "as_push": as_push}
+    as_reading = dict(zip(felt, found.as_reading.tolist(), strict=True))
+    lasting = {"lasting": found.lasting.tolist(), "together": found.common.tolist()}
+    return {**sizes, **lasting, "as_push": as_push, "as_reading": as_reading}
 
 
 def in_time(run: Run, sync: Mapping[str, Any]) -> Run:

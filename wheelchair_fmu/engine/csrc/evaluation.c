@@ -18,7 +18,8 @@
 #define HELD 1.0      /* and the sum of squares by which innovations may differ where slopes hold */
 #define MOMENT 1      /* of the forces that nobody recorded, the moment, */
 #define TREMOR 2      /* that of bumps, */
-#define SWINGS 5      /* and the first of those by which a body swings */
+#define ACROSS 5      /* that of a floor's slope to the side, */
+#define SWINGS 6      /* and the first of those by which a body swings */
 #define SWEEPS 30     /* of Jacobi's rotations */
 
 static const double shares[] = {1.0, 0.5, 0.25, 0.1, 0.03}; /* of a step that are tried */
@@ -163,7 +164,8 @@ static void as_push(const wc_recording *s, const wc_values *v, double *to) {
     for (int q = 0; q < s->noise.nq; q++) {
         for (int d = 0; d < s->noise.nd; d++) {
             double unit = s->noise.as_push[q * s->noise.nd + d];
-            to[q * s->noise.nd + d] = d == MOMENT || d == TREMOR ? unit : unit * v->numbers[WC_ALONG];
+            int turns = d == MOMENT || d == TREMOR || d == ACROSS;
+            to[q * s->noise.nd + d] = turns ? unit : unit * v->numbers[WC_ALONG];
         }
     }
 }
@@ -194,6 +196,15 @@ static void read(const wc_recording *s, const double *sizes, const double *y, do
         for (int z = 0; z < nz; z++) {
             if (s->constant_readings[j * nz + z]) move(s, sizes[j], nz, to + z, column);
         }
+    }
+}
+
+/* Adds to readings (n x nz) what sensors have of the forces of e's path besides what these do to the chair. */
+static void feel(const wc_recording *s, const wc_evaluation *e, double *to) {
+    int nz = s->noise.nz, nd = s->noise.nd;
+    for (long at = 0; nd && at < readings(s); at++) {
+        const double *by = s->noise.as_reading + at % nz * nd, *path = e->path + at / nz * nd;
+        for (int d = 0; d < nd; d++) to[at] += by[d] * path[d];
     }
 }
 
@@ -477,6 +488,7 @@ static void add(const wc_recording *s, wc_evaluation *e, const double *by, doubl
         for (int q = 0; q < s->noise.nq; q++) e->noise[i * nq + q] = unrecorded(s, e, by, i, q);
     }
     wc_respond(&e->f, s->n, e->noise, 0, to);
+    feel(s, e, to);
 }
 
 /* Results and readings without forces and with pushes as recorded, from this start. */
@@ -501,6 +513,7 @@ static int linearise(const wc_recording *s, const wc_values *v, wc_evaluation *e
                                 &e->by, e->busy, e->reached);
     if (status != WC_OK) return status;
     read(s, e->own.start + s->starts, e->y, e->driven, e->column);
+    feel(s, e, e->driven);
     make_filter(s, e);
     memset(e->added, 0, sizeof(double) * (size_t)readings(s));
     if (led) add(s, e, e->as_push, e->added);
@@ -537,8 +550,10 @@ static int drive(const wc_recording *s, const wc_values *v, wc_evaluation *e, co
     act(s, e, e->as_push);
     e->pushed = pushed;
     int status = run(s, v, e, start, e->x, e->y);
-    if (status == WC_OK) read(s, start + s->starts, e->y, to, e->column);
-    return status;
+    if (status != WC_OK) return status;
+    read(s, start + s->starts, e->y, to, e->column);
+    feel(s, e, to);
+    return WC_OK;
 }
 
 /* e->step: from e's path to the forces as the first `until` rows of readings have them; in standard deviations, its largest. */
@@ -775,6 +790,7 @@ int wc_again(const wc_recording *s, const wc_values *v, wc_evaluation *e, int ke
     int status = run(s, v, e, e->own.start, x, to->results);
     if (status != WC_OK) return status;
     read(s, e->own.start + s->starts, to->results, to->foretold, e->column);
+    feel(s, e, to->foretold);
     if (led && !kept) add(s, e, by, e->added_again);
     const double *added = kept ? e->added : e->added_again;
     for (long at = 0; led && at < readings(s); at++) to->foretold[at] -= added[at];

@@ -559,6 +559,7 @@ void wc_compose(const wc_noise *s, const wc_slopes *by, long n, filter *f) {
             long from = i * by->sensors + s->which[z], to = i * s->nz + z;
             memcpy(f->H + to * nx, by->by_state + from * nx, sizeof(double) * (size_t)nx);
             compose_row(s, by->by_push + from * by->columns, f->D + to * both);
+            for (int d = 0; d < s->nd; d++) f->D[to * both + s->nq + d] += s->as_reading[z * s->nd + d];
         }
     }
     compose_inputs(s, n, f);

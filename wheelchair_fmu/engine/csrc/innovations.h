@@ -27,7 +27,8 @@ typedef struct {
     const double *sd, *ar, *step;                  /* nz: and s between these samples */
     const double *unknown_sd, *lasting;            /* n x nd: standard deviation at each moment, and s until forgotten, */
     const double *together;                        /* nd x nd: correlation */
-    const double *as_push;                         /* nq x nd: as what change of the pushes one unit of each acts */
+    const double *as_push;                         /* nq x nd: as what change of the pushes one unit of each acts, */
+    const double *as_reading;                      /* nz x nd: and what it adds to a reading besides what it does to the chair */
 } wc_noise;
 
 /* How a run goes with its states and pushes, as in tangent.h; all of its `columns` pushes and `sensors` readings. */

@@ -10,7 +10,6 @@ from ...errors import SimulationError
 from ..estimation.fit import Fit
 from ..evidence.disturbance import Strength, acting, strength
 from ..evidence.evidence import Evidence
-from ..evidence.likelihood import MASS
 from ..evidence.noise_model import NoiseModel
 from ..models.models import Models
 from ..models.setting import Setting
@@ -28,16 +27,14 @@ def needed(models: Models, effects: Sequence[str], at: Fit) -> tuple[Strength, E
     if set(at.names) <= set(likelihood.records):
         with suppress(SimulationError):
             return acting(likelihood, at.values)
-    chair = likelihood.chair(at.values)
-    return strength(at.evidence, chair["chair.t_r"], chair["chair.b"]), at.evidence
+    return strength(at.evidence, likelihood.chair(at.values)), at.evidence
 
 
 def led(models: Models, calibrated: Fit, forces: Strength, along: Evidence) -> Models:
     """The models of the same campaign, with its columns and clocks as they were found, along such forces, as they lead the
     calibrated model's runs."""
     w, values = models.factory, calibrated.values
-    mass = models.likelihood().chair(values)[MASS]
-    noise_model = forces.put_into(NoiseModel(w.campaign.noise), mass)
+    noise_model = forces.put_into(NoiseModel(w.campaign.noise))
     return replace(models, factory=w.led(), setting=Setting.led(noise_model, along, values))
 
 

@@ -19,7 +19,7 @@ from ...campaign import moving
 from ...engine.innovations import ByForces, Disturbance, Whitener
 from ..parallel import parallel_map
 from .evidence import Evidence, RunEvidence
-from .likelihood import Likelihood
+from .likelihood import MASS, Likelihood
 from .noise_model import FORGOTTEN, NoiseModel, disturbance, pushes_of, stroke, strong_and_lasting
 
 SIZES = ("force", "moment", "body", "tremor")
@@ -39,6 +39,8 @@ START = (
     (6.0,) * 4,
 )
 LASTING = (0.4, 1.3)  # m: a chair feels no slope for less than its own length; what lasts for longer is an effect
+ASIDE = "a_y"  # the channel that tells what share of the moment a floor has,
+SHARES, MOSTLY = (0.03, 1.0), 0.9  # between which that may be, and from where it is sought
 PRECISE = 1e-7  # share by which −2 log posterior may still fall,
 NEARBY = 1e-5  # and share of a strength over which its slope is taken: over more, a minimum's slope is not 0
 ROUNDS = 5  # in which a path and a strength are found, at most,
@@ -48,19 +50,26 @@ CLOSE = 0.1  # of a strength, by which the last one may differ
 @dataclass(frozen=True)
 class Strength:
     """Standard deviations of the slow force (N), of the moment (N m) and of the momentum of the rider's body (N s) that a model
-    needs, by how much −2 log posterior falls with them, the way (m) over which the moment is forgotten, the standard deviations
-    of the floor's force (N), of what its bumps turn the chair with (N m) and push it along (N), and the RMS push (N) of the
-    runs that all was found for."""
+    needs, by how much −2 log posterior falls with them, the way (m) over which the moment is forgotten, what share of its
+    standard deviation is the pull of a floor, the standard deviations of what bumps turn the chair with (N m) and push it along
+    (N); and what all was found for: the RMS push (N) of the runs, and the chair's mass (kg) and the lever (m) of its CM."""
 
     force: float
     moment: float
     body: float
     fall: float
     lasting: float = FORGOTTEN
-    floor: float = 0.0
+    share: float = 0.0
     tremor: float = 0.0
     bumps: float = 0.0
     stroke: float = 0.0
+    mass: float = 0.0
+    lever: float = 1.0
+
+    @property
+    def floor(self) -> float:
+        """Standard deviation (N) of what a floor pulls along the heading, and to the side at the CM."""
+        return self.share * self.moment / self.lever
 
     @property
     def along(self) -> float:
@@ -72,32 +81,34 @@ class Strength:
         """Standard deviations of the force along the heading (N) and of the moment (N m), with bumps."""
         return float(np.hypot(self.along, self.bumps)), float(np.hypot(self.moment, self.tremor))
 
-    def put_into(self, noise_model: NoiseModel, mass: float = 0.0) -> NoiseModel:
-        """Noise with forces of this strength, found for a chair of this mass (kg)."""
-        turning = replace(noise_model, moment=self.moment, lasting=self.lasting, tremor=self.tremor)
+    def put_into(self, noise_model: NoiseModel) -> NoiseModel:
+        """Noise with forces of this strength."""
+        moment = self.moment * float(np.sqrt(1 - self.share**2))
+        turning = replace(noise_model, moment=moment, lasting=self.lasting, tremor=self.tremor)
         along = replace(turning, force=self.force, floor=self.floor, bumps=self.bumps, body=self.body)
-        return replace(along, mass=mass, stroke=self.stroke)
+        return replace(along, mass=self.mass, lever=self.lever, stroke=self.stroke)
 
 
-def strength(evidence: Evidence, t_r: float, b: float, about: Strength | None = None) -> Strength:
+def strength(evidence: Evidence, chair: Mapping[str, float], about: Strength | None = None) -> Strength:
     """The most likely strength, given evidence of one model with its filters; zero where the readings ask for none.
 
-    What turns a chair says how uneven a floor is: `t_r` is the distance (m) between the wheels, `b` that from the axle to the
-    CM, where a slope to the side pulls. Along the heading a body pushes as well, and readings hardly tell the two apart. So the
-    moment is found without a floor, and what there is along the heading beside a floor that is as steep along the way, and as
-    bumpy: what pushes one rear wheel turns the chair by half the distance between the two, and what pushes the other as well.
-    The search begins `about` a strength, where one is known that is nearly it. Uncertain clocks and baselines of runs are taken
-    as they are.
+    What turns a `chair` says how uneven a floor is: a slope to the side pulls at the CM, before the axle. Along the heading a
+    body pushes as well, and readings hardly tell the two apart. So the moment is found without a floor, and what there is along
+    the heading beside a floor that is as steep along the way, and as bumpy: what pushes one rear wheel turns the chair by half
+    the distance between the two, and what pushes the other as well. What turns it is all the floor's, unless an accelerometer
+    tells how much is: it feels what else turns a chair to the side, and no gravity. The search begins `about` a strength,
+    where one is known that is nearly it. Uncertain clocks and baselines of runs are taken as they are.
     """
-
-    by_forces = parallel_map(lambda e: _by_forces(e, t_r), evidence.runs)
+    t_r, mass, lever = chair["chair.t_r"], chair["chair.m"], max(chair["chair.b"], NEAR)
+    pushed = stroke(*(e.run for e in evidence.runs))
+    none = Strength(0.0, 0.0, 0.0, 0.0, stroke=pushed, mass=mass, lever=lever)
+    by_forces = parallel_map(lambda e: _by_forces(e, none, t_r), evidence.runs)
 
     def deviances(strengths: Sequence[Strength]) -> np.ndarray:
         ratios = np.array([[getattr(s, name) for name in SIZES] for s in strengths]) / USUAL
         told = parallel_map(lambda asked: asked[1](asked[0]), product(strengths, by_forces))
         return np.sum(np.reshape(told, (len(strengths), -1)), axis=1) + 2 * np.sum(ratios, axis=1)
 
-    none = Strength(0.0, 0.0, 0.0, 0.0, stroke=stroke(*(e.run for e in evidence.runs)))
     starts = [*_starts(none, about)]
     without, *tried = deviances([none, *starts])
     if min(tried) > without:
@@ -105,8 +116,9 @@ def strength(evidence: Evidence, t_r: float, b: float, about: Strength | None = 
     found, least = _likeliest(deviances, starts[int(np.argmin(tried))], (*SIZES, "lasting"))
     uneven = _felt(found)
     if uneven.moment or uneven.tremor:
-        floor, bumps = uneven.moment / max(b, NEAR), uneven.tremor / (t_r / 2)
-        found, least = _likeliest(deviances, replace(found, floor=floor, bumps=bumps), ("force", "body"))
+        told = uneven.moment and any(ASIDE in e.channels for e in evidence.runs)
+        begun = replace(found, share=MOSTLY if told else 1.0, bumps=uneven.tremor / (t_r / 2))
+        found, least = _likeliest(deviances, begun, ("force", "body", *(("moment", "lasting", "share") if told else ())))
     return replace(_felt(found), fall=float(without - least))
 
 
@@ -133,7 +145,8 @@ def _likeliest(
     deviances: Callable[[Sequence[Strength]], np.ndarray], begun: Strength, by: Sequence[str]
 ) -> tuple[Strength, float]:
     """The strength with the least deviance, as those of its figures change that are named, and that deviance."""
-    limits = {**{name: (LEAST * usual, MOST * usual) for name, usual in zip(SIZES, USUAL, strict=True)}, "lasting": LASTING}
+    sizes = {name: (LEAST * usual, MOST * usual) for name, usual in zip(SIZES, USUAL, strict=True)}
+    limits = {**sizes, "lasting": LASTING, "share": SHARES}
 
     def at(logs: np.ndarray) -> Strength:
         return replace(begun, **dict(zip(by, map(float, np.exp(logs)), strict=True)))
@@ -160,12 +173,12 @@ def acting(likelihood: Likelihood, values: Mapping[str, float]) -> tuple[Strengt
     """
     likelihood, chair = likelihood.led(moving(likelihood.campaign)), likelihood.chair(values)
     force, moment, body, tremor = USUAL
-    found = Strength(force, moment, body, 0.0, tremor=tremor)
+    found = Strength(force, moment, body, 0.0, tremor=tremor, mass=chair[MASS])
     likelihood = likelihood.with_noise_model(found.put_into(likelihood.noise_model))
     for _ in range(ROUNDS):
         evidence = likelihood.evidence(likelihood.campaign.fit, values, tune_start=1)
         known = found if found.fall else None
-        before, found = found, strength(evidence, chair["chair.t_r"], chair["chair.b"], known)
+        before, found = found, strength(evidence, chair, known)
         if not found.fall or _alike(before, found):
             break
         likelihood = likelihood.continued(evidence).with_noise_model(found.put_into(likelihood.noise_model))
@@ -188,12 +201,13 @@ def _forces(e: RunEvidence, noise_model: NoiseModel, t_r: float) -> Disturbance:
     """Forces as changes of the inputs that the filter of a run has noise for."""
     alone = pushes_of(e.run)
     inputs = alone if len(alone) == e.filter.whitener.recorded else pushes_of(e.run, led=True)
-    return disturbance(noise_model, inputs, t_r, swinging=noise_model.swung(e.effort), speed=e.pace)
+    swinging = noise_model.swung(e.effort)
+    return disturbance(noise_model, inputs, t_r, swinging=swinging, speed=e.pace, readings=e.channels)
 
 
-def _by_forces(e: RunEvidence, t_r: float) -> Callable[[Strength], float]:
-    """−2 log likelihood of a run, but for a constant, by how strong forces are."""
-    every, filter_ = Strength(1.0, 1.0, 1.0, 0.0, floor=1.0, tremor=1.0, bumps=1.0), e.filter.whitener
+def _by_forces(e: RunEvidence, none: Strength, t_r: float) -> Callable[[Strength], float]:
+    """−2 log likelihood of a run, but for a constant, by how strong forces are, of which there are `none` of a chair."""
+    every, filter_ = replace(none, body=1.0), e.filter.whitener
     forces = _forces(e, every.put_into(NoiseModel({})), t_r)
     deviance = ByForces(filter_, forces, e.measured - e.foretold, e.offset[: filter_.size[0]])
 

@@ -143,7 +143,8 @@ class Likelihood:
         assert isinstance(e.whitener, Marginal)
         results, driven = self._simulated(e.run, values, e.start, path)
         pushed = path @ self._unknown(e.run, values).as_push.T
-        return replace(e, results=results, driven=driven, path=path, added=e.whitener.whitener.response(pushed))
+        added = e.whitener.whitener.response(pushed) + self._felt(e.run, path)
+        return replace(e, results=results, driven=driven, path=path, added=added)
 
     def restarted(self, evidence: Evidence, values: Mapping[str, float]) -> Evidence:
         """The same model at its `values`, with every run started where the readings want it, to first order. Innovations allow
@@ -194,7 +195,8 @@ class Likelihood:
             w = self._pushed(run, w, pushed)
         results = self.sensitivities.simulator.run(run.time, w, given, tolerance=TOLERANCE).results
         predicted = results.take([self.sensitivities.rows[i] for i in self._which(run)], axis=1)
-        return results, read(run, self._channels(run), predicted, start)
+        read_ = read(run, self._channels(run), predicted, start)
+        return results, read_ if path is None else read_ + self._felt(run, path)
 
     def _tuned(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], rounds: int) -> RunEvidence:
         """A run, started where its readings want it; one that is led, also where forces which nobody recorded lead it."""
@@ -303,7 +305,8 @@ class Likelihood:
 
     def _of_any_chair(self, run: Run) -> Disturbance:
         """The forces on a chair of the mass that they were found for."""
-        return disturbance(self.noise_model, self._pushes(run), swinging=self.noise_model.swinging(run), speed=pace(run))
+        swinging, readings = self.noise_model.swinging(run), self._channels(run)
+        return disturbance(self.noise_model, self._pushes(run), swinging=swinging, speed=pace(run), readings=readings)
 
     def _told(
         self, run: Run, values: Mapping[str, float], by: tuple[str, ...], found: Evaluation, start: Mapping[str, float]
@@ -337,6 +340,12 @@ class Likelihood:
 
     def _unknown(self, run: Run, values: Mapping[str, float]) -> Disturbance:
         return disturbance(self.noise_model, self._pushes(run), along=self.noise_model.along(self.chair(values)[MASS]))
+
+    def _felt(self, run: Run, path: np.ndarray) -> np.ndarray:
+        """What readings (n, nz) have of forces along a path (n, nd) besides what these do to the chair."""
+        by = disturbance(self.noise_model, self._pushes(run), readings=self._channels(run)).as_reading
+        assert by is not None
+        return np.asarray(path @ by.T)
 
     def _driven(self, run: Run, w: np.ndarray, path: np.ndarray, values: Mapping[str, float]) -> np.ndarray:
         """Inputs (n, nw) with forces that nobody recorded."""

@@ -25,12 +25,14 @@ FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten, or m,
 # smoothly, as muscles pull; of second order it would tremble, and a slow force would seem likelier than a body
 SWUNG = (1 / 15, 1 / 10, 3 / 20)
 PATCH = 0.05  # m over which a bump is forgotten that a wheel rolls over: as long as a tyre's contact patch
-# of the processes of `disturbance`, a force, a moment, the moment and the force of bumps, a floor's, and those of the body,
-# which are the body's,
-BODYS = np.repeat([False, True], [5, len(SWUNG)])
-PLACES = np.repeat([False, True, False], [1, 4, len(SWUNG)])  # those that a floor has in it,
-FORCED = len(BODYS)  # how many there are, which of them is the moment, and which push along the heading
-MOMENT, ALONG = 1, (0, *range(3, FORCED))
+# of the processes of `disturbance`, a force, a moment, the moment and the force of bumps, a floor's force, the moment of its
+# slope to the side, and those of the body, which are the body's,
+BODYS = np.repeat([False, True], [6, len(SWUNG)])
+PLACES = np.repeat([False, True, False], [1, 5, len(SWUNG)])  # those that a floor has in it,
+FORCED = len(BODYS)  # how many there are, which of them are the moment and the floor's, and which push along the heading
+MOMENT, FLOOR, ACROSS = 1, 4, 5
+ALONG = (0, 3, FLOOR, *range(6, FORCED))
+GRAVITY = {"a_x": FLOOR, "a_y": ACROSS}  # accelerometers, and what moves a chair and is nothing that they feel
 DIES_OUT = 0.6  # s in which a body's swing of 1.3 Hz and a fifth of the critical damping falls by e
 GRID = 0.01  # s, of the pushes as they swing a body
 
@@ -43,8 +45,9 @@ class NoiseModel:
     sd: Mapping[str, float]
     ar: Mapping[str, float] = field(default_factory=dict)  # AR(1) coefficient from sample to sample
     force: float = 0.0  # N, standard deviation of what pushes the chair along its heading for long and nobody recorded,
-    moment: float = 0.0  # N m, of what turns it,
-    floor: float = 0.0  # N, of what an uneven floor pushes along the heading,
+    moment: float = 0.0  # N m, of what turns it, beside a floor,
+    floor: float = 0.0  # N, of what an uneven floor pulls along the heading, and to the side at the CM,
+    lever: float = 0.0  # m, of the CM before the axle, where that turns the chair,
     body: float = 0.0  # N s, of the momentum that a rider's body has against the chair, beside what was recorded of it,
     bumps: float = 0.0  # N, of what bumps push along the heading,
     tremor: float = 0.0  # N m, and of what they turn the chair with
@@ -135,10 +138,11 @@ def disturbance(
     along: float = 1.0,
     swinging: np.ndarray | float = 1.0,
     speed: np.ndarray | float = 1.0,
+    readings: Sequence[str] = (),
 ) -> Disturbance:
-    """A force along the heading, a moment, the moment and the force of bumps, that of an uneven floor, and the processes by
-    which a rider's body pushes, as changes of these inputs: of those from outside where they are among them, which no rider's
-    body answers, or else of both hands', on wheels `t_r` apart.
+    """A force along the heading, a moment, the moment and the force of bumps, the force and the moment of an uneven floor, and
+    the processes by which a rider's body pushes, as changes of these inputs: of those from outside where they are among them,
+    which no rider's body answers, or else of both hands', on wheels `t_r` apart; and of these `readings`.
 
     `along` is how many times as large as in `noise_model` that is which acts along the heading, `swinging` times how much the
     body swings, `speed` (m/s) how fast the chair rolls, at each moment (n,) or throughout.
@@ -147,8 +151,8 @@ def disturbance(
     force without a mean. A floor's slopes have one over the way of a run: the spectrum of heights of what is rolled on falls
     with the square of the wave number (ISO 8608), so that slopes have all long waves alike. Those along the way and to the
     side, which turn a chair, are forgotten together. A floor is as it is in each place: who rolls slowly stays longer on a
-    slope, and gains or loses the more by it. Bumps are shorter than a chair, and push one wheel and not the other, so that they
-    turn it as well.
+    slope, and gains or loses the more by it. What a slope does to a chair is gravity, which no accelerometer feels. Bumps are
+    shorter than a chair, and push one wheel and not the other, so that they turn it as well.
     """
     body = _swing(noise_model.body, SWUNG)
     as_push, common = np.zeros((len(inputs), FORCED)), np.eye(FORCED)
@@ -158,8 +162,21 @@ def disturbance(
         shares = {hand: (0.5, side / t_r) for hand, side in zip(HANDS, (1, -1), strict=True)}
     for name, (ahead, turning) in shares.items():
         back = -along * ahead * np.sign(body.rates)
-        as_push[inputs.index(name)] = [along * ahead, turning, turning, along * ahead, along * ahead, *back]
-    return Disturbance(*strong_and_lasting(noise_model, swinging, speed), as_push, common)
+        pushed = along * ahead
+        as_push[inputs.index(name)] = [pushed, turning, turning, pushed, pushed, turning, *back]
+    return Disturbance(*strong_and_lasting(noise_model, swinging, speed), as_push, common, _felt(noise_model, readings))
+
+
+def _felt(noise_model: NoiseModel, readings: Sequence[str]) -> np.ndarray:
+    """What a unit of each process adds to these readings (nz, d) besides what it does to the chair: less the gravity that is
+    among what moves it, F/m along the heading and M/(m b) to the side, of a chair whose mass and lever are known."""
+    out = np.zeros((len(readings), FORCED))
+    inertia = {FLOOR: noise_model.mass, ACROSS: noise_model.mass * noise_model.lever}
+    for i, name in enumerate(readings):
+        process = GRAVITY.get(name)
+        if process is not None and inertia[process]:
+            out[i, process] = -1 / inertia[process]
+    return out
 
 
 def strong_and_lasting(
@@ -167,9 +184,9 @@ def strong_and_lasting(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Standard deviations of the processes of `disturbance`, and the times (s) over which each is forgotten, (d,) or (n, d)."""
     body, place = _swing(noise_model.body, SWUNG), noise_model.lasting
-    lasting = np.array([FORGOTTEN, place, PATCH, PATCH, place, *body.lasting])  # s, or m
-    sizes = (noise_model.force, noise_model.moment, noise_model.tremor, noise_model.bumps, noise_model.floor)
-    sd = np.array([*sizes, *np.abs(body.rates)])
+    lasting = np.array([FORGOTTEN, place, PATCH, PATCH, place, place, *body.lasting])  # s, or m
+    floor = (noise_model.floor, noise_model.floor * noise_model.lever)
+    sd = np.array([noise_model.force, noise_model.moment, noise_model.tremor, noise_model.bumps, *floor, *np.abs(body.rates)])
     seconds = np.where(PLACES, np.multiply.outer(1 / np.asarray(speed), lasting), lasting)
     return np.where(BODYS, np.multiply.outer(swinging, sd), sd), seconds
 

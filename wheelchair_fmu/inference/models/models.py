@@ -274,11 +274,10 @@ class Models:
         before, lowest, campaign = self.setting.noise_model, QUIETER if again else 0.0, self.campaign
         now, notes = noise_model_of(found.evidence, campaign.noise, before, lowest, campaign.noise_estimated)
         if self.factory.leads:
-            chair = self.likelihood().chair(found.values)
-            forces = strength(found.evidence, chair["chair.t_r"], chair["chair.b"])
+            forces = strength(found.evidence, self.likelihood().chair(found.values))
             each = by_run(found.evidence, before)
             known = replace(now, by_run=each, shown=shown(found.evidence, each, before))
-            now = forces.put_into(known, chair["chair.m"])
+            now = forces.put_into(known)
         if not now.differs(before):
             return None  # and models that are compared are by the same noise
         return replace(self, setting=replace(self.setting, noise_model=now, notes=tuple(notes)))

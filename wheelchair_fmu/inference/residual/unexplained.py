@@ -20,7 +20,7 @@ from ..estimation.fit import Fit
 from ..evidence.disturbance import MOST, USUAL, Strength, disturbed
 from ..evidence.evidence import Evidence, RunEvidence
 from ..evidence.likelihood import Likelihood
-from ..evidence.noise_model import NoiseModel, pushes_of
+from ..evidence.noise_model import ACROSS, FORCED, MOMENT, NoiseModel, pushes_of
 from ..parallel import parallel_map
 from .panel import Panel, against, in_run
 
@@ -148,12 +148,14 @@ def unexplained(likelihood: Likelihood, found: Fit, before: Strength, after: Str
 
 def missing(evidence: Evidence, strength: Strength, t_r: float) -> list[Missing]:
     """The force and moment of each run, by evidence of one model with its filters; `t_r` is the distance (m) between wheels."""
+    both = np.zeros((2, FORCED))
+    both[0, 0], both[1, [MOMENT, ACROSS]] = 1.0, 1.0  # what turns a chair, a floor or not; its pull along the way goes by that
 
     def one(e: RunEvidence) -> Missing:
         filter_, start = disturbed(e, strength.put_into(NoiseModel({})), t_r)
-        mean, sd = smoothed(filter_, e.measured - e.foretold, start)
-        both = {name: (mean[:, i], sd[:, i]) for i, name in enumerate(("force", "moment"))}
-        return Missing(e.run.name, e.run.time, {n: m for n, (m, _) in both.items()}, {n: s for n, (_, s) in both.items()})
+        mean, sd = smoothed(filter_, e.measured - e.foretold, start, both)
+        means, sds = (dict(zip(("force", "moment"), values.T, strict=True)) for values in (mean, sd))
+        return Missing(e.run.name, e.run.time, means, sds)
 
     return parallel_map(one, evidence.runs)
 

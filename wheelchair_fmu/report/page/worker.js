@@ -124,8 +124,8 @@ class Kernel {
     const { wasm } = this, names = Object.keys(run.channels), nz = names.length, n = run.time.length, inputs = this.inputs.map(([name]) => name);
     const flags = (all, some) => all.map((name) => +some.includes(name)), among = (all) => (name) => all.indexOf(name);
     const series = names.map((c) => run.channels[c]), time = this.put(run.time), { pushes, constants } = run, nq = pushes.names.length;
-    const forces = campaign.forces ?? { sd: [], body: [], places: [], lasting: [], together: [], as_push: {} }, nd = forces.lasting.length;
-    const asPush = pushes.names.flatMap((name) => forces.as_push[name] ?? forces.lasting.map(() => 0));
+    const forces = campaign.forces ?? { sd: [], body: [], places: [], lasting: [], together: [], as_push: {}, as_reading: {} }, nd = forces.lasting.length;
+    const [asPush, asReading] = [[pushes.names, forces.as_push], [names, forces.as_reading]].map(([all, by]) => all.flatMap((name) => by[name] ?? forces.lasting.map(() => 0)));
     const each = (of, changed, times) => Float64Array.from({ length: n * nd }, (_, at) => of[at % nd] * (changed[at % nd] ? times(Math.floor(at / nd)) : 1));
     const sizes = each(forces.sd, forces.body, (i) => run.swinging[i]), lasting = each(forces.lasting, forces.places, (i) => 1 / run.pace[i]);
     const recorded = Float64Array.from({ length: n * nz }, (_, at) => series[at % nz][Math.floor(at / nz)]);
@@ -136,7 +136,7 @@ class Kernel {
       ints(flags(names, campaign.drifting)), doubles([run.usual]), ...SPEEDS,
       nq, nz, nd, time, ints(pushes.names.map(among(inputs))), ints(names.map((c) => this.sensors.indexOf(campaign.outputs[c]))),
       doubles(pushes.sd), doubles(pushes.ar), doubles(pushes.step), doubles(run.noise.sd), doubles(run.noise.ar), doubles(run.noise.step),
-      this.put(sizes), this.put(lasting), doubles(forces.together.flat()), doubles(asPush),
+      this.put(sizes), this.put(lasting), doubles(forces.together.flat()), doubles(asPush), doubles(asReading),
       this.starts.length, 0, ints(this.starts.map(among(this.columns))), this.starts.length, ints(this.starts.map(among(this.parameters.map(([name]) => name)))),
       ints(this.starts.map((name) => +(name in run.set))), this.starts.indexOf("start.u"), doubles(this.starts.map((s) => run.start[s])), doubles(this.starts.map((s) => run.start_sd[s])),
       constants.length, ints(of((c) => KINDS[c.kind])), ints(of((c) => flags(inputs, c.inputs))), ints(of((c) => flags(names, c.channels))), doubles(shape), doubles(of((c) => c.sd)),
