@@ -5,7 +5,7 @@ A number after `--drawn` is a lab that benchmarks/independent/labs.py draws. Eac
 lines of its protocol that no file holds, and diagnosed. Printed is what is said, and how far off: clocks and baselines in
 standard errors; held-out errors beside those of simulations that know all but the floor, with the body as it moved or by
 a law of it; forces that nobody recorded beside the floor's; the share of held-out samples in bands of 95 %; intervals that miss
-what was hidden. All figures of a lab are kept in `--out`.
+what was hidden. All figures of a lab, and its diagnosis, are kept in `--out`.
 """
 
 from __future__ import annotations
@@ -160,6 +160,7 @@ def row(answer: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         "missed": list(missed(parameters, true)),
         "parameters": parameters,
         "seconds": told["seconds"],
+        "diagnosis": told,
     }
 
 

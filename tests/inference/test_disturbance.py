@@ -37,7 +37,7 @@ def test_the_force_that_was_put_in_comes_out(sample, force, moment):
     campaign = ridden(
         sample, rng, lambda run, without: (wandering(rng, run.time, force), wandering(rng, rolled(run, without), moment))
     )
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR, NoiseModel({}))
     assert found.along == pytest.approx(force, rel=0.15, abs=0.15)
     assert found.moment == pytest.approx(moment, rel=0.15, abs=0.03)
     noise = found.put_into(Likelihood(campaign, Variant()).noise_model)
@@ -50,7 +50,7 @@ def test_what_turns_a_chair_counts_as_a_floor_that_is_as_steep_along_the_way(sam
     rng = np.random.default_rng(5)
     campaign = ridden(sample, rng, lambda run, without: (0 * run.time, wandering(rng, rolled(run, without), 0.4)))
     campaign = without_accelerometers(campaign)
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR, NoiseModel({}))
     assert found.moment == pytest.approx(0.4, rel=0.15) and found.floor == pytest.approx(found.moment / B)
     assert found.force < 0.15 and found.body < 0.15
 
@@ -67,7 +67,7 @@ def test_an_accelerometer_tells_the_pull_of_a_floor_from_what_else_turns_a_chair
 
     campaign = ridden(sample, rng, pushes)
     evidence = Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ())
-    found = strength(evidence, CHAIR)
+    found = strength(evidence, CHAIR, NoiseModel({}))
     assert found.moment == pytest.approx(MASS * B * g, rel=0.12) and found.share == pytest.approx(share, abs=0.35)
     assert found.floor == pytest.approx(share * MASS * g, abs=0.7) and found.force < 0.3
     noise = found.put_into(Likelihood(campaign, Variant()).noise_model)
@@ -105,7 +105,7 @@ def test_a_floor_is_forgotten_as_soon_as_the_chair_is_off_it(sample):
     """Slopes that are alike over 0.6 m, however fast it rolls."""
     rng = np.random.default_rng(11)
     campaign = ridden(sample, rng, lambda run, without: (0 * run.time, wandering(rng, rolled(run, without), 0.4, 0.6)))
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR, NoiseModel({}))
     assert found.lasting == pytest.approx(0.6, rel=0.25) and found.moment == pytest.approx(0.4, rel=0.15)
 
 
@@ -123,7 +123,7 @@ def test_an_uneven_floor_pushes_along_as_much_as_it_turns_the_chair(sample):
 
     campaign = ridden(sample, rng, pushes)
     force, moment = weight * np.std(np.concatenate(true, axis=1), axis=1) * (1, B)
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR, NoiseModel({}))
     assert found.moment == pytest.approx(moment, rel=0.1) and found.along == pytest.approx(force, rel=0.1)
     assert found.body == pytest.approx(swings, rel=0.25)
 
@@ -140,7 +140,7 @@ def test_bumps_under_one_wheel_or_the_other_are_told_from_slopes(sample, slow):
         return left + right, T_R / 2 * (left - right) + wandering(rng, way, slow)
 
     campaign = ridden(sample, rng, pushes)
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR, NoiseModel({}))
     assert found.tremor == pytest.approx(bump * T_R / np.sqrt(2), rel=0.15)
     assert found.bumps == pytest.approx(bump * np.sqrt(2), rel=0.15)
     assert found.moment == pytest.approx(slow, rel=0.25, abs=0.1) and found.force < 1.0 and found.body < 0.3
@@ -156,7 +156,7 @@ def test_a_body_is_told_from_a_floor_by_how_it_pushes_back(sample):
         return wandering(rng, run.time, 1.0) - np.gradient(body, run.time), 0 * run.time
 
     campaign = ridden(sample, rng, pushes)
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR, NoiseModel({}))
     assert found.body == pytest.approx(swings, rel=0.25)
     assert found.force < 2.5 and found.moment < 0.1
 
@@ -207,7 +207,7 @@ def test_who_pushes_moves_and_who_rolls_sits_still(sample):
         return -np.gradient(swinging(rng, run.time, swings, pushing(run) / usual), run.time), 0 * run.time
 
     campaign = ridden(sample, rng, pushes)
-    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR)
+    found = strength(Likelihood(campaign, Variant()).evidence(campaign.runs, {}, ()), CHAIR, NoiseModel({}))
     assert found.body == pytest.approx(swings, rel=0.15) and found.along < 0.5
     known = found.put_into(NoiseModel(campaign.noise))
     for run in campaign.runs:
@@ -354,7 +354,9 @@ def test_a_model_that_stands_where_the_chair_rolls_needs_the_force_that_it_lacks
     found, evidence = acting(likelihood, wrong)
     assert 3.0 < found.force < 7.0 and found.moment == pytest.approx(0.5, rel=0.1)
     assert float(np.sqrt(np.mean(evidence.r**2))) == pytest.approx(1, abs=0.03)
-    assert strength(likelihood.evidence(campaign.fit, wrong, ()), CHAIR).force > 100, "or nobody would need the way it went"
+    assert strength(likelihood.evidence(campaign.fit, wrong, ()), CHAIR, NoiseModel({})).force > 100, (
+        "or nobody would need the way it went"
+    )
 
 
 def test_a_run_that_begins_in_mid_stroke_is_foretold_at_the_speed_of_chair_and_body(sample):

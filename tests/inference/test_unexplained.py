@@ -11,6 +11,7 @@ from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.estimation.fit import Fit
 from wheelchair_fmu.inference.evidence.disturbance import Strength, strength
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
+from wheelchair_fmu.inference.evidence.noise_model import NoiseModel
 from wheelchair_fmu.inference.residual.panel import against
 from wheelchair_fmu.inference.residual.unexplained import CONSTANT, Missing, Order, Unexplained, _lone, unexplained
 from wheelchair_fmu.model.effects import bundled
@@ -23,7 +24,7 @@ def left_of(campaign):
     """What the chair of the sample lacks on a campaign, as it is given."""
     likelihood = Likelihood(campaign, Variant())
     evidence = likelihood.evidence(campaign.fit, {}, ())
-    needed = strength(evidence, CHAIR)
+    needed = strength(evidence, CHAIR, NoiseModel({}))
     return unexplained(likelihood, Fit((), {}, np.zeros((0, 0)), evidence, 0.0, np.zeros((0, 0))), needed, needed, evidence)
 
 

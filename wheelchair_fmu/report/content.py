@@ -19,7 +19,18 @@ from ..inference.estimation.statistics import finite
 from ..inference.evidence.initial_state import CASTERS, START, TUNING, prior_start, start_sd, starts_of
 from ..inference.evidence.likelihood import BODY, TOLERANCE, driven
 from ..inference.evidence.local import BaselineError, ClockError, Local, locals_of
-from ..inference.evidence.noise_model import BODYS, GRAVITY, PLACES, NoiseModel, disturbance, noise_of, pushes_of
+from ..inference.evidence.noise_model import (
+    BODYS,
+    FORCED,
+    GRAVITY,
+    PLACES,
+    RECORDED,
+    RIDER,
+    NoiseModel,
+    disturbance,
+    noise_of,
+    pushes_of,
+)
 from ..inference.explain.landscape import landscape
 from ..inference.models.factory import ModelFactory
 from ..inference.models.models import Models
@@ -105,18 +116,24 @@ def _fitted(diagnosis: Mapping[str, Any]) -> Mapping[str, Any]:
 
 def _forces(colour: NoiseModel) -> dict[str, Any] | None:
     """Forces that nobody recorded, as these act from outside: a `Disturbance` of a chair of the mass they were found for that
-    rolls at 1 m/s; which of them are the rider's body's, whose size in a run is `swinging` times as large, and which the
-    floor's, which are forgotten sooner by as much as a run has `pace`."""
-    if not colour.disturbed:
+    rolls at 1 m/s; which of them are the rider's body's, whose size in a run is `swinging` times as large, which the floor's,
+    which are forgotten sooner by as much as a run has `pace`, and which are in runs whose record of that body may be wrong."""
+    if not _acts(colour):
         return None
     felt = tuple(GRAVITY)
-    found = disturbance(colour, EXTERNAL, readings=felt)
+    found = disturbance(colour, (*EXTERNAL, RIDER), readings=felt)
     assert found.common is not None and found.as_reading is not None
-    as_push = dict(zip(EXTERNAL, found.as_push.tolist(), strict=True))
-    sizes = {"sd": found.sd.tolist(), "body": BODYS.tolist(), "places": PLACES.tolist()}
+    as_push = dict(zip(EXTERNAL, found.as_push[: len(EXTERNAL)].tolist(), strict=True))
+    recorded = np.isin(np.arange(FORCED), np.r_[RECORDED]).tolist()
+    sizes = {"sd": found.sd.tolist(), "body": BODYS.tolist(), "places": PLACES.tolist(), "recorded": recorded}
     as_reading = dict(zip(felt, found.as_reading.tolist(), strict=True))
     lasting = {"lasting": found.lasting.tolist(), "together": found.common.tolist()}
     return {**sizes, **lasting, "as_push": as_push, "as_reading": as_reading}
+
+
+def _acts(colour: NoiseModel) -> bool:
+    """Is there anything among the noise that acts, besides errors of recorded pushes?"""
+    return colour.disturbed or colour.wrong > 0
 
 
 def in_time(run: Run, sync: Mapping[str, Any]) -> Run:
@@ -192,8 +209,8 @@ def _run(run: Run, campaign: Campaign, colour: NoiseModel, leads: bool) -> dict[
             "step": noise.push_step.tolist(),
         },
         "noise": {"sd": noise.readings.tolist(), "ar": noise.colour.tolist(), "step": steps(run.time, present).tolist()},
-        "swinging": _series(colour.swinging(run) if colour.disturbed else ()),
-        "pace": _series(pace(run) if colour.disturbed else ()),
+        "swinging": _series(colour.swinging(run) if _acts(colour) else ()),
+        "pace": _series(pace(run) if _acts(colour) else ()),
         "constants": [_constant(c) for c in locals_of(run)],
     }
 

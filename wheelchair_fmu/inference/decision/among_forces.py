@@ -27,7 +27,7 @@ def needed(models: Models, effects: Sequence[str], at: Fit) -> tuple[Strength, E
     if set(at.names) <= set(likelihood.records):
         with suppress(SimulationError):
             return acting(likelihood, at.values)
-    return strength(at.evidence, likelihood.chair(at.values)), at.evidence
+    return strength(at.evidence, likelihood.chair(at.values), likelihood.noise_model), at.evidence
 
 
 def led(models: Models, calibrated: Fit, forces: Strength, along: Evidence) -> Models:

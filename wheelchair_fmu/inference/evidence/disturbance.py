@@ -89,8 +89,11 @@ class Strength:
         return replace(along, mass=self.mass, lever=self.lever, stroke=self.stroke)
 
 
-def strength(evidence: Evidence, chair: Mapping[str, float], about: Strength | None = None) -> Strength:
-    """The most likely strength, given evidence of one model with its filters; zero where the readings ask for none.
+def strength(
+    evidence: Evidence, chair: Mapping[str, float], noise_model: NoiseModel, about: Strength | None = None
+) -> Strength:
+    """The most likely strength, given evidence of one model with its filters, whose noise is `noise_model` but for forces; zero
+    where the readings ask for none.
 
     What turns a `chair` says how uneven a floor is: a slope to the side pulls at the CM, before the axle. Along the heading a
     body pushes as well, and readings hardly tell the two apart. So the moment is found without a floor, and what there is along
@@ -102,7 +105,7 @@ def strength(evidence: Evidence, chair: Mapping[str, float], about: Strength | N
     t_r, mass, lever = chair["chair.t_r"], chair["chair.m"], max(chair["chair.b"], NEAR)
     pushed = stroke(*(e.run for e in evidence.runs))
     none = Strength(0.0, 0.0, 0.0, 0.0, stroke=pushed, mass=mass, lever=lever)
-    by_forces = parallel_map(lambda e: _by_forces(e, none, t_r), evidence.runs)
+    by_forces = parallel_map(lambda e: _by_forces(e, none, noise_model, t_r), evidence.runs)
 
     def deviances(strengths: Sequence[Strength]) -> np.ndarray:
         ratios = np.array([[getattr(s, name) for name in SIZES] for s in strengths]) / USUAL
@@ -178,7 +181,7 @@ def acting(likelihood: Likelihood, values: Mapping[str, float]) -> tuple[Strengt
     for _ in range(ROUNDS):
         evidence = likelihood.evidence(likelihood.campaign.fit, values, tune_start=1)
         known = found if found.fall else None
-        before, found = found, strength(evidence, chair, known)
+        before, found = found, strength(evidence, chair, likelihood.noise_model, known)
         if not found.fall or _alike(before, found):
             break
         likelihood = likelihood.continued(evidence).with_noise_model(found.put_into(likelihood.noise_model))
@@ -205,14 +208,14 @@ def _forces(e: RunEvidence, noise_model: NoiseModel, t_r: float) -> Disturbance:
     return disturbance(noise_model, inputs, t_r, swinging=swinging, speed=e.pace, readings=e.channels)
 
 
-def _by_forces(e: RunEvidence, none: Strength, t_r: float) -> Callable[[Strength], float]:
+def _by_forces(e: RunEvidence, none: Strength, noise_model: NoiseModel, t_r: float) -> Callable[[Strength], float]:
     """−2 log likelihood of a run, but for a constant, by how strong forces are, of which there are `none` of a chair."""
     every, filter_ = replace(none, body=1.0), e.filter.whitener
-    forces = _forces(e, every.put_into(NoiseModel({})), t_r)
+    forces = _forces(e, every.put_into(noise_model), t_r)
     deviance = ByForces(filter_, forces, e.measured - e.foretold, e.offset[: filter_.size[0]])
 
     def of(strength: Strength) -> float:
-        noise_model = strength.put_into(NoiseModel({}))
-        return deviance(*strong_and_lasting(noise_model, noise_model.swung(e.effort), e.pace))
+        among = strength.put_into(noise_model)
+        return deviance(*strong_and_lasting(among, among.swung(e.effort), e.pace))
 
     return of

@@ -26,7 +26,7 @@ from .evidence import Begin, Evidence, RunEvidence, begins_of, followed
 from .flipping import may_swing_round
 from .initial_state import CASTERS, prior_start, start_sd, starts_of, uncertain
 from .local import BaselineError, ClockError, Local, Marginal, felt, locals_of, rate_of, read
-from .noise_model import ALONG, FORCED, MOMENT, NoiseModel, disturbance, noise_of, pushes_of
+from .noise_model import ALONG, FORCED, MOMENT, RIDER, NoiseModel, disturbance, noise_of, pushes_of
 
 TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best sensor's noise
 BODY = frozenset(BY_NAME[name].fmu for name in BODY_NAMES)  # of the rider, which no logger of pushes records
@@ -291,7 +291,7 @@ class Likelihood:
             np.array([BY_NAME[c].drifts for c in channels]),
             [self._inputs.index(n) for n in pushes],
             noise_of(self.noise_model, run, channels, pushes),
-            self._of_any_chair(run) if self.noise_model.disturbed else None,
+            self._of_any_chair(run) if self.noise_model.disturbed or RIDER in run.inputs else None,
             self.leads,
             self.start_names,
             np.array([prior[n] for n in self.start_names]),
@@ -304,7 +304,7 @@ class Likelihood:
         return pushes_of(run, self.leads)
 
     def _of_any_chair(self, run: Run) -> Disturbance:
-        """The forces on a chair of the mass that they were found for."""
+        """The forces on a chair of the mass that they were found for, and what is wrong in the record of its rider's body."""
         swinging, readings = self.noise_model.swinging(run), self._channels(run)
         return disturbance(self.noise_model, self._pushes(run), swinging=swinging, speed=pace(run), readings=readings)
 

@@ -16,22 +16,25 @@ from ...campaign.series import estimate
 from ...engine.innovations import Disturbance, Noise
 from ...engine.tangent import EXTERNAL
 
+RIDER = BY_NAME[MOMENTUM].fmu
 FORCES, TORQUES = tuple(PUSHES), tuple(PUSHES.values())  # records of pushes, which carry noise
 HANDS, TURNS = (tuple(BY_NAME[n].fmu for n in names) for names in (FORCES, TORQUES))
 SCATTER = 1.15  # ratio of two estimates of the same noise
-SWING = 0.15  # s over which an error of the momentum of the rider's body is forgotten: markers miss a part of each swing
 FORGOTTEN = 1.0  # s over which a force that nobody recorded is forgotten, or m, as long as nothing tells it
 # s, of the third order by which the momentum of a rider's body swings: with each stroke, about once a second, and back, and
 # smoothly, as muscles pull; of second order it would tremble, and a slow force would seem likelier than a body
 SWUNG = (1 / 15, 1 / 10, 3 / 20)
+# s, of the second order by which the record of such a momentum is wrong: of what swings at 2 to 3 Hz a smoothing spline leaves
+# half, of the camera's noise and of the body's motion
+HASTY = (3 / 50, 3 / 40)
 PATCH = 0.05  # m over which a bump is forgotten that a wheel rolls over: as long as a tyre's contact patch
 # of the processes of `disturbance`, a force, a moment, the moment and the force of bumps, a floor's force, the moment of its
-# slope to the side, and those of the body, which are the body's,
-BODYS = np.repeat([False, True], [6, len(SWUNG)])
-PLACES = np.repeat([False, True, False], [1, 5, len(SWUNG)])  # those that a floor has in it,
-FORCED = len(BODYS)  # how many there are, which of them are the moment and the floor's, and which push along the heading
-MOMENT, FLOOR, ACROSS = 1, 4, 5
-ALONG = (0, 3, FLOOR, *range(6, FORCED))
+# slope to the side, those of the body, and those of what a record of its motion has wrong: which is which,
+MOMENT, FLOOR, ACROSS, SWINGS = 1, 4, 5, slice(6, 6 + len(SWUNG))
+RECORDED = slice(SWINGS.stop, SWINGS.stop + len(HASTY))
+FORCED = RECORDED.stop  # how many there are, which are the body's
+BODYS, PLACES = (np.isin(np.arange(FORCED), np.r_[which]) for which in (SWINGS, slice(1, SWINGS.start)))  # and a floor's,
+ALONG = (0, 3, FLOOR, *range(SWINGS.start, SWINGS.stop))  # and those whose push along the heading goes by the chair's mass
 GRAVITY = {"a_x": FLOOR, "a_y": ACROSS}  # accelerometers, and what moves a chair and is nothing that they feel
 DIES_OUT = 0.6  # s in which a body's swing of 1.3 Hz and a fifth of the critical damping falls by e
 GRID = 0.01  # s, of the pushes as they swing a body
@@ -84,6 +87,11 @@ class NoiseModel:
         return mass / self.mass if self.mass else 1.0
 
     @property
+    def wrong(self) -> float:
+        """Standard deviation (N s) of what is wrong in a record of the momentum of the rider's body."""
+        return self.sd.get(MOMENTUM, 0.0)
+
+    @property
     def disturbed(self) -> bool:
         """Do forces act that nobody recorded?"""
         return max(self.force, self.moment, self.floor, self.body, self.bumps, self.tremor) > 0
@@ -123,8 +131,7 @@ def noise_of(
     """The noise of a run's recorded pushes and of its readings, and the covariance of its start."""
     usual = float(np.median(np.diff(run.time)))
     step = np.array([run.steps.get(n, usual) for n in pushes])
-    swing = run.steps.get(BY_NAME[MOMENTUM].fmu, usual)
-    sd, ar = noise_model.sd, {MOMENTUM: float(np.exp(-swing / SWING)), **noise_model.ar}
+    sd, ar = {**noise_model.sd, MOMENTUM: 0.0}, noise_model.ar  # what is wrong in that is a process of `disturbance`
     known = [BY_FMU_NAME[n].name if n in BY_FMU_NAME else n for n in pushes]  # what acts from outside is nobody's record
     push_sd, push_ar = np.array([(sd.get(n, 0.0), ar.get(n, 0.0)) for n in known]).T
     reading_sd, reading_ar = np.array([(noise_model.of(c, run), ar.get(c, 0.0)) for c in channels]).T
@@ -140,9 +147,10 @@ def disturbance(
     speed: np.ndarray | float = 1.0,
     readings: Sequence[str] = (),
 ) -> Disturbance:
-    """A force along the heading, a moment, the moment and the force of bumps, the force and the moment of an uneven floor, and
-    the processes by which a rider's body pushes, as changes of these inputs: of those from outside where they are among them,
-    which no rider's body answers, or else of both hands', on wheels `t_r` apart; and of these `readings`.
+    """A force along the heading, a moment, the moment and the force of bumps, the force and the moment of an uneven floor, the
+    processes by which a rider's body pushes, and those by which it pushes beside its record, as changes of these inputs: of
+    those from outside where they are among them, which no rider's body answers, or else of both hands', on wheels `t_r` apart;
+    and of these `readings`.
 
     `along` is how many times as large as in `noise_model` that is which acts along the heading, `swinging` times how much the
     body swings, `speed` (m/s) how fast the chair rolls, at each moment (n,) or throughout.
@@ -154,16 +162,16 @@ def disturbance(
     slope, and gains or loses the more by it. What a slope does to a chair is gravity, which no accelerometer feels. Bumps are
     shorter than a chair, and push one wheel and not the other, so that they turn it as well.
     """
-    body = _swing(noise_model.body, SWUNG)
+    body, wrong, recorded = _swing(noise_model.body, SWUNG), _swing(noise_model.wrong, HASTY), RIDER in inputs
     as_push, common = np.zeros((len(inputs), FORCED)), np.eye(FORCED)
-    common[np.ix_(BODYS, BODYS)] = body.together
+    common[SWINGS, SWINGS], common[RECORDED, RECORDED] = body.together, wrong.together
     shares = {EXTERNAL[0]: (1.0, 0.0), EXTERNAL[1]: (0.0, 1.0)}
     if not shares.keys() <= set(inputs):
         shares = {hand: (0.5, side / t_r) for hand, side in zip(HANDS, (1, -1), strict=True)}
     for name, (ahead, turning) in shares.items():
-        back = -along * ahead * np.sign(body.rates)
-        pushed = along * ahead
-        as_push[inputs.index(name)] = [pushed, turning, turning, pushed, pushed, turning, *back]
+        pushed, back = along * ahead, -ahead * np.sign(wrong.rates) * recorded
+        own = [pushed, turning, turning, pushed, pushed, turning, *(-pushed * np.sign(body.rates)), *back]
+        as_push[inputs.index(name)] = own
     return Disturbance(*strong_and_lasting(noise_model, swinging, speed), as_push, common, _felt(noise_model, readings))
 
 
@@ -183,19 +191,18 @@ def strong_and_lasting(
     noise_model: NoiseModel, swinging: np.ndarray | float = 1.0, speed: np.ndarray | float = 1.0
 ) -> tuple[np.ndarray, np.ndarray]:
     """Standard deviations of the processes of `disturbance`, and the times (s) over which each is forgotten, (d,) or (n, d)."""
-    body, place = _swing(noise_model.body, SWUNG), noise_model.lasting
-    lasting = np.array([FORGOTTEN, place, PATCH, PATCH, place, place, *body.lasting])  # s, or m
-    floor = (noise_model.floor, noise_model.floor * noise_model.lever)
-    sd = np.array([noise_model.force, noise_model.moment, noise_model.tremor, noise_model.bumps, *floor, *np.abs(body.rates)])
+    swings = np.concatenate((_swing(noise_model.body, SWUNG).rates, _swing(noise_model.wrong, HASTY).rates))
+    place, floor = noise_model.lasting, (noise_model.floor, noise_model.floor * noise_model.lever)
+    lasting = np.array([FORGOTTEN, place, PATCH, PATCH, place, place, *SWUNG, *HASTY])  # s, or m
+    sd = np.array([noise_model.force, noise_model.moment, noise_model.tremor, noise_model.bumps, *floor, *np.abs(swings)])
     seconds = np.where(PLACES, np.multiply.outer(1 / np.asarray(speed), lasting), lasting)
     return np.where(BODYS, np.multiply.outer(swinging, sd), sd), seconds
 
 
 class _Swing(NamedTuple):
-    """Processes of first order that one noise drives, whose sum is the rate of another: times (k,) in s, what one standard
-    deviation of each adds to that rate (k,), and their correlation (k, k)."""
+    """Processes of first order that one noise drives, whose sum is the rate of another: what one standard deviation of each
+    adds to that rate (k,), and their correlation (k, k)."""
 
-    lasting: Sequence[float]
     rates: np.ndarray
     together: np.ndarray
 
@@ -207,7 +214,7 @@ def _swing(momentum: float, lasting: Sequence[float]) -> _Swing:
     apart = np.subtract.outer(T, T) + np.eye(len(T))
     together = 2 * np.sqrt(np.outer(T, T)) / np.add.outer(T, T)
     shares = T ** (len(T) - 1.5) / np.prod(apart, axis=1)  # partial fractions, in standard deviations of each process
-    return _Swing(lasting, -momentum * shares / T / np.sqrt(shares @ together @ shares), together)
+    return _Swing(-momentum * shares / T / np.sqrt(shares @ together @ shares), together)
 
 
 def stroke(*runs: Run) -> float:
@@ -235,7 +242,7 @@ def _both(run: Run) -> np.ndarray:
 
 def pushes_of(run: Run, led: bool = False) -> tuple[str, ...]:
     """FMU names of the inputs that a filter has noise for: forces, and torques and the momentum of the rider's body where they
-    were recorded; where a run is `led`, those from outside too."""
+    were recorded; where a run is `led`, or that record may be wrong, those from outside too."""
     names = FORCES if not any(BY_NAME[n].fmu in run.inputs for n in TORQUES) else (*FORCES, *TORQUES)
-    names = (*names, MOMENTUM) if BY_NAME[MOMENTUM].fmu in run.inputs else names
-    return (*(BY_NAME[n].fmu for n in names), *(EXTERNAL if led else ()))
+    body = (RIDER,) if RIDER in run.inputs else ()
+    return (*(BY_NAME[n].fmu for n in names), *body, *(EXTERNAL if led or body else ()))

@@ -274,7 +274,7 @@ class Models:
         before, lowest, campaign = self.setting.noise_model, QUIETER if again else 0.0, self.campaign
         now, notes = noise_model_of(found.evidence, campaign.noise, before, lowest, campaign.noise_estimated)
         if self.factory.leads:
-            forces = strength(found.evidence, self.likelihood().chair(found.values))
+            forces = strength(found.evidence, self.likelihood().chair(found.values), now)
             each = by_run(found.evidence, before)
             known = replace(now, by_run=each, shown=shown(found.evidence, each, before))
             now = forces.put_into(known)

@@ -141,18 +141,19 @@ def unexplained(likelihood: Likelihood, found: Fit, before: Strength, after: Str
     weight, arm = chair["chair.m"] * chair["g"], chair["chair.b"]
     if not after.fall:
         return Unexplained(before, after, (), (), weight, arm)
-    forces = missing(evidence, after, chair["chair.t_r"])
+    forces = missing(evidence, after, likelihood.noise_model, chair["chair.t_r"])
     by = orders(evidence, forces, after, likelihood.sensitivities.results, chair["wheel.R"])
     return Unexplained(before, after, tuple(by), tuple(forces), weight, arm)
 
 
-def missing(evidence: Evidence, strength: Strength, t_r: float) -> list[Missing]:
-    """The force and moment of each run, by evidence of one model with its filters; `t_r` is the distance (m) between wheels."""
+def missing(evidence: Evidence, strength: Strength, other: NoiseModel, t_r: float) -> list[Missing]:
+    """The force and moment of each run, by evidence of one model with its filters; `other` is their other noise, `t_r` the
+    distance (m) between wheels."""
     both = np.zeros((2, FORCED))
     both[0, 0], both[1, [MOMENT, ACROSS]] = 1.0, 1.0  # what turns a chair, a floor or not; its pull along the way goes by that
 
     def one(e: RunEvidence) -> Missing:
-        filter_, start = disturbed(e, strength.put_into(NoiseModel({})), t_r)
+        filter_, start = disturbed(e, strength.put_into(other), t_r)
         mean, sd = smoothed(filter_, e.measured - e.foretold, start, both)
         means, sds = (dict(zip(("force", "moment"), values.T, strict=True)) for values in (mean, sd))
         return Missing(e.run.name, e.run.time, means, sds)

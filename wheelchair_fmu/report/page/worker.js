@@ -124,10 +124,11 @@ class Kernel {
     const { wasm } = this, names = Object.keys(run.channels), nz = names.length, n = run.time.length, inputs = this.inputs.map(([name]) => name);
     const flags = (all, some) => all.map((name) => +some.includes(name)), among = (all) => (name) => all.indexOf(name);
     const series = names.map((c) => run.channels[c]), time = this.put(run.time), { pushes, constants } = run, nq = pushes.names.length;
-    const forces = campaign.forces ?? { sd: [], body: [], places: [], lasting: [], together: [], as_push: {}, as_reading: {} }, nd = forces.lasting.length;
+    const forces = campaign.forces ?? { sd: [], body: [], places: [], recorded: [], lasting: [], together: [], as_push: {}, as_reading: {} }, nd = forces.lasting.length;
     const [asPush, asReading] = [[pushes.names, forces.as_push], [names, forces.as_reading]].map(([all, by]) => all.flatMap((name) => by[name] ?? forces.lasting.map(() => 0)));
     const each = (of, changed, times) => Float64Array.from({ length: n * nd }, (_, at) => of[at % nd] * (changed[at % nd] ? times(Math.floor(at / nd)) : 1));
-    const sizes = each(forces.sd, forces.body, (i) => run.swinging[i]), lasting = each(forces.lasting, forces.places, (i) => 1 / run.pace[i]);
+    const acting = forces.sd.map((sd, d) => (forces.recorded[d] && !pushes.names.includes("rider.momentum") ? 0 : sd));
+    const sizes = each(acting, forces.body, (i) => run.swinging[i]), lasting = each(forces.lasting, forces.places, (i) => 1 / run.pace[i]);
     const recorded = Float64Array.from({ length: n * nz }, (_, at) => series[at % nz][Math.floor(at / nz)]);
     const doubles = (list) => this.put(Float64Array.from(list)), ints = (list) => this.words(list);
     const of = (part) => constants.flatMap(part), shape = of((c) => [...(c.shape ?? new Float64Array(n))]);
