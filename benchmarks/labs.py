@@ -145,7 +145,7 @@ def row(answer: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         "verdict": told["verdict"],
         "named": [*dict.fromkeys((*told["effects"], *(e for tie in told["ties"] for e in tie)))],
         "hidden": answer["verdict"],
-        "unfair": unfair(told, answer, filmed),
+        "unfair": unfair(told, answer, filmed, campaign.known["wheel.R"]),
         "heldout": {"calibrated": told["ladder"][1]["heldout"], "last": told["ladder"][-1]["heldout"]},
         "hub_speed": {run: _speed(last, run) for run in floors},
         "yaw_rate": {run: last["yaw_rate"]["runs"][run] for run in floors if "yaw_rate" in last},
@@ -164,17 +164,20 @@ def row(answer: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     }
 
 
-def unfair(told: Mapping[str, Any], answer: Mapping[str, Any], filmed: bool) -> str:
+def unfair(told: Mapping[str, Any], answer: Mapping[str, Any], filmed: bool, radius: float) -> str:
     """What is wrong with the names of a diagnosis: one that nothing hidden bears, or none of what is missing; else nothing.
 
     Casters trail and stick in every lab, a CM that is somewhere above the floor loads wheels, and a patch that is turned has
-    several laws. A body whose motion was recorded is in the model as it moved, and is not missing.
+    several laws. A body whose motion was recorded is in the model as it moved, and is not missing. Wheels of another radius (m)
+    than was given have an error of it.
     """
     hidden = answer["verdict"]
     named = {*told["effects"], *(e for tie in told["ties"] for e in tie)}
     true = {*hidden["missing"], *hidden.get("also", ())} - ({BODY} if filmed else set())
     true |= {*TURNS_HARD} if answer["hidden"]["turn_slip"]["M_p"] else set()
-    false = named - true - {*hidden.get("small", ()), *SLIGHT, *(LOADS if answer["hidden"].get("h_cm") else ())}
+    slight = {*hidden.get("small", ()), *SLIGHT, *(LOADS if answer["hidden"].get("h_cm") else ())}
+    slight |= {"wheel_radius_error"} if radius != answer["hidden"]["wheel_radius"] else set()
+    false = named - true - slight
     if false:
         return f"{', '.join(sorted(false))} named, which is not there"
     return "" if not true or named & true else f"none of {', '.join(sorted(true))} named"

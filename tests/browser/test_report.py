@@ -5,12 +5,15 @@ from __future__ import annotations
 import csv
 import json
 import re
+import shutil
+from dataclasses import replace
 from pathlib import Path
 from statistics import median
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
+import pandas as pd
 import pytest
 from PIL import Image
 
@@ -124,6 +127,31 @@ def test_what_a_run_sets_is_so_in_the_page(browser, tmp_path):
     reader.close()
 
 
+def test_a_filmed_body_pushes_beside_its_record_as_in_the_search(browser, tmp_path):
+    """In the runs that filmed it, by the camera's noise."""
+    folder = Path(shutil.copytree(SAMPLE, tmp_path / "campaign"))
+    file, toml = folder / "runs" / "straight-strokes.csv", folder / "campaign.toml"
+    run = pd.read_csv(file)
+    run["rider.s [m]"] = 0.06 * np.sin(2 * np.pi * run["time [s]"]) + np.random.default_rng(3).normal(0, 2e-3, len(run))
+    run.to_csv(file, index=False)
+    toml.write_text(toml.read_text().replace("[tyre]", "[rider]\nm = 45.0\n\n[tyre]"))
+    reader, measured = Reader(browser, report_of(folder, tmp_path / "report.html")), windows(read(folder))
+    noise = noise_told(TOLD, measured.noise)
+    values = MODELS[f"+{HIDDEN}"]
+    reader.set(values)
+    found, by_noise = reader.table(), {}
+    for known in (noise, replace(noise, sd={**noise.sd, "rider.momentum": 0.0})):
+        expected = Likelihood(measured, variant_of(reader, 0), known).evidence(measured.runs, values, tune_start=2)
+        by_noise[known.wrong] = {e.run.name: e.rms for e in expected.runs}
+    with_it, without = (by_noise[wrong] for wrong in (noise.wrong, 0.0))
+    for name, errors in with_it.items():
+        assert found[name] == pytest.approx(errors, rel=1e-7), name
+    filmed = "straight-strokes"
+    assert noise.wrong > 0.1 and without[filmed]["a_x"] > 1.1 * with_it[filmed]["a_x"]
+    assert without["coast-down"] == pytest.approx(with_it["coast-down"], rel=1e-9)
+    reader.close()
+
+
 def test_forces_that_nobody_recorded_are_among_the_noise_as_in_the_search(browser, tmp_path, campaign):
     """Every run is led along them, from where it was led to at the values before, and weighed by them."""
     ladder = [*TOLD["ladder"][:2], {**TOLD["ladder"][1], "step": UNRECORDED}, *TOLD["ladder"][2:]]
@@ -132,6 +160,7 @@ def test_forces_that_nobody_recorded_are_among_the_noise_as_in_the_search(browse
         "moment": 0.4,
         "body": 1.5,
         "floor": 2.0,
+        "lever": 0.12,
         "stroke": 30.0,
         "lasting": 0.7,
         "mass": 82.0,

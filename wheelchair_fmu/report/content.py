@@ -62,7 +62,7 @@ def content(
     factory = ModelFactory(campaign, variant, fixed)
     models = Models(factory, Setting(colour))
     variants = [variant.with_effects(ids) for ids in layers(factory, campaign.effects, diagnosis["effects"])]
-    inputs = driven(campaign).union(EXTERNAL if leads else ())
+    inputs = driven(campaign).union(EXTERNAL if _acts(colour) else ())
     compiled = modules([(v.choice, v.active()) for v in variants], STARTS, inputs)
     measured = {name for r in campaign.runs for name in r.channels}
     return {

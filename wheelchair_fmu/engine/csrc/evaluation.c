@@ -19,8 +19,7 @@
 #define MOMENT 1      /* of the forces that nobody recorded, the moment, */
 #define TREMOR 2      /* that of bumps, */
 #define ACROSS 5      /* that of a floor's slope to the side, */
-#define SWINGS 6      /* the first of those by which a body swings, */
-#define RECORDED 9    /* and of what the record of its swings has wrong */
+#define SWINGS 6      /* and the first of those by which a body swings, or swings beside its record */
 #define SWEEPS 30     /* of Jacobi's rotations */
 
 static const double shares[] = {1.0, 0.5, 0.25, 0.1, 0.03}; /* of a step that are tried */
@@ -165,8 +164,8 @@ static void as_push(const wc_recording *s, const wc_values *v, double *to) {
     for (int q = 0; q < s->noise.nq; q++) {
         for (int d = 0; d < s->noise.nd; d++) {
             double unit = s->noise.as_push[q * s->noise.nd + d];
-            int known = d == MOMENT || d == TREMOR || d == ACROSS || d >= RECORDED;
-            to[q * s->noise.nd + d] = known ? unit : unit * v->numbers[WC_ALONG];
+            int turns = d == MOMENT || d == TREMOR || d == ACROSS;
+            to[q * s->noise.nd + d] = turns ? unit : unit * v->numbers[WC_ALONG];
         }
     }
 }

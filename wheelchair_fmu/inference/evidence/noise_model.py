@@ -34,7 +34,7 @@ MOMENT, FLOOR, ACROSS, SWINGS = 1, 4, 5, slice(6, 6 + len(SWUNG))
 RECORDED = slice(SWINGS.stop, SWINGS.stop + len(HASTY))
 FORCED = RECORDED.stop  # how many there are, which are the body's
 BODYS, PLACES = (np.isin(np.arange(FORCED), np.r_[which]) for which in (SWINGS, slice(1, SWINGS.start)))  # and a floor's,
-ALONG = (0, 3, FLOOR, *range(SWINGS.start, SWINGS.stop))  # and those whose push along the heading goes by the chair's mass
+ALONG = (0, 3, FLOOR, *range(SWINGS.start, FORCED))  # and those that push along the heading
 GRAVITY = {"a_x": FLOOR, "a_y": ACROSS}  # accelerometers, and what moves a chair and is nothing that they feel
 DIES_OUT = 0.6  # s in which a body's swing of 1.3 Hz and a fifth of the critical damping falls by e
 GRID = 0.01  # s, of the pushes as they swing a body
@@ -169,9 +169,8 @@ def disturbance(
     if not shares.keys() <= set(inputs):
         shares = {hand: (0.5, side / t_r) for hand, side in zip(HANDS, (1, -1), strict=True)}
     for name, (ahead, turning) in shares.items():
-        pushed, back = along * ahead, -ahead * np.sign(wrong.rates) * recorded
-        own = [pushed, turning, turning, pushed, pushed, turning, *(-pushed * np.sign(body.rates)), *back]
-        as_push[inputs.index(name)] = own
+        pushed, back = along * ahead, np.concatenate((np.sign(body.rates), recorded * np.sign(wrong.rates)))
+        as_push[inputs.index(name)] = [pushed, turning, turning, pushed, pushed, turning, *(-pushed * back)]
     return Disturbance(*strong_and_lasting(noise_model, swinging, speed), as_push, common, _felt(noise_model, readings))
 
 
