@@ -94,7 +94,8 @@ def imported(lab: Lab, out: Path, filmed: bool = True) -> Path:
 
 
 def truths(hidden: Mapping[str, Any], spinning: bool = False) -> dict[str, float]:
-    """By parameter, what was hidden. Of wheels that are not `spinning` in the model the spin counts as mass and yaw inertia."""
+    """By parameter, what was hidden. Of wheels that are not `spinning` in the model the spin counts as mass and yaw inertia.
+    Half of what one rear wheel drags more is in the model's drag of both."""
     spin = 0.0 if spinning else 2 * hidden["wheel_inertia_each_kgm2"] / hidden["wheel_radius"] ** 2
     found = {f"chair.{name}": hidden[name] for name in ("a", "b", "t_r")}
     found |= {f"resistance.{name}": hidden[name] for name in ("f_r", "f_f")}
@@ -102,6 +103,9 @@ def truths(hidden: Mapping[str, Any], spinning: bool = False) -> dict[str, float
     found |= {"chair.I_z": hidden["I_z"] + spin * hidden["t_r"] ** 2 / 4}
     found |= {"effect.caster_trail.c": hidden["caster_trail"], "effect.caster_friction.M": hidden["caster_friction"]}
     found |= {f"effect.{effect}.h": hidden["h_cm"] for effect in LOADS if hidden.get("h_cm")}
+    lopsided = hidden.get("extra_drag_left_N", 0.0)
+    found["resistance.f_r"] += lopsided / (GRAVITY * hidden["m"] * hidden["a"] / (hidden["a"] + hidden["b"]))
+    found["effect.rolling_resistance_asymmetry.D"] = lopsided
     return found | {"effect.pivot_torque.M": hidden["turn_slip"]["M_p"]}
 
 
