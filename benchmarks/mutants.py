@@ -75,7 +75,14 @@ NAMED = (  # file, what stands there once, what stands there instead
     (L + "evidence/likelihood.py", '"chair.I_z": bends', '"chair.I_z": 0 * bends'),
     (L + "evidence/disturbance.py", "uneven.tremor / (t_r / 2)", "uneven.tremor / t_r"),
     (L + "evidence/likelihood.py", "np.clip(s, -3 * sd[n], 3 * sd[n])", "np.clip(s, -30 * sd[n], 30 * sd[n])"),
+    (L + "evidence/noise_model.py", "-1 / inertia[process]", "0 / inertia[process]"),
+    (L + "evidence/noise_model.py", "*range(SWINGS.start, FORCED))", "*range(SWINGS.start, SWINGS.stop))"),
+    (L + "evidence/noise_model.py", "noise_model.floor * noise_model.lever)", "noise_model.floor)"),
+    (L + "evidence/noise_model.py", "return self.sd.get(MOMENTUM, 0.0)", "return 0.0"),
+    ("wheelchair_fmu/campaign/swinging.py", "DEGREE, STIFF = 5, 4", "DEGREE, STIFF = 5, 2"),
     ("wheelchair_fmu/engine/csrc/evaluation.c", "#define REACH 3.0", "#define REACH 30.0"),
+    ("wheelchair_fmu/engine/csrc/evaluation.c", "feel(s, e, e->driven);", ""),
+    ("wheelchair_fmu/engine/csrc/evaluation.c", "    feel(s, e, to);\n}", "}"),
 )
 
 
