@@ -105,7 +105,7 @@ def truths(hidden: Mapping[str, Any], spinning: bool = False) -> dict[str, float
     found |= {f"effect.{effect}.h": hidden["h_cm"] for effect in LOADS if hidden.get("h_cm")}
     lopsided = hidden.get("extra_drag_left_N", 0.0)
     found["resistance.f_r"] += lopsided / (GRAVITY * hidden["m"] * hidden["a"] / (hidden["a"] + hidden["b"]))
-    found["effect.rolling_resistance_asymmetry.D"] = lopsided
+    found["effect.rolling_resistance_asymmetry.D"] = lopsided or hidden.get("chair", {}).get("drag_difference", 0.0)
     return found | {"effect.pivot_torque.M": hidden["turn_slip"]["M_p"]}
 
 
