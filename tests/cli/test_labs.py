@@ -59,7 +59,8 @@ def test_what_is_hidden_is_named_and_nothing_that_is_not(found):
     answers = json.loads((MEASUREMENTS / "lab-answers.json").read_text())[lab]
     hidden = answers["verdict"]
     if lab == "lab-00":  # whose body was measured, but for a little that no marker sees
-        assert diagnosis.verdict in ("adequate", "cannot_see", "small") and named <= {*hidden["missing"]}
+        assert diagnosis.verdict in ("adequate", "cannot_see", "small")
+        assert named <= {*hidden["missing"], "wheel_radius_error"}, "the protocol has the wheels 1 mm too large"
     else:
         true = {*hidden["missing"], *hidden["also"], *hidden["small"]} | ({"pivot_torque"} if lab == "lab-01" else set())
         if answers["hidden"]["caster_trail"] > bundled()["caster_trail"].parameters[0].smallest_interesting:
