@@ -40,7 +40,7 @@ START = (
 )
 LASTING = (0.4, 1.3)  # m: a chair feels no slope for less than its own length; what lasts for longer is an effect
 ASIDE = "a_y"  # the channel that tells what share of the moment a floor has,
-SHARES, MOSTLY = (0.03, 1.0), 0.9  # between which that may be, and from where it is sought
+SHARES, PARTLY = (0.03, 1.0), 0.7  # between which that may be, and from where it is sought
 PRECISE = 1e-7  # share by which −2 log posterior may still fall,
 NEARBY = 1e-5  # and share of a strength over which its slope is taken: over more, a minimum's slope is not 0
 ROUNDS = 5  # in which a path and a strength are found, at most,
@@ -96,11 +96,12 @@ def strength(
     where the readings ask for none.
 
     What turns a `chair` says how uneven a floor is: a slope to the side pulls at the CM, before the axle. Along the heading a
-    body pushes as well, and readings hardly tell the two apart. So the moment is found without a floor, and what there is along
-    the heading beside a floor that is as steep along the way, and as bumpy: what pushes one rear wheel turns the chair by half
-    the distance between the two, and what pushes the other as well. What turns it is all the floor's, unless an accelerometer
-    tells how much is: it feels what else turns a chair to the side, and no gravity. The search begins `about` a strength,
-    where one is known that is nearly it. Uncertain clocks and baselines of runs are taken as they are.
+    body pushes as well, and readings hardly tell the two apart. So the moment is found without a floor, and what there is
+    along the heading beside a floor that is as steep along the way, and as bumpy: what pushes one rear wheel turns the chair
+    by half the distance between the two, and what pushes the other as well. What turns it is all the floor's, unless an
+    accelerometer tells how much is, from the first: it feels what else turns a chair to the side, and no gravity, and would
+    deny a floor. The search begins `about` a strength, where one is known that is nearly it. Uncertain clocks and baselines
+    of runs are taken as they are.
     """
     t_r, mass, lever = chair["chair.t_r"], chair["chair.m"], max(chair["chair.b"], NEAR)
     pushed = stroke(*(e.run for e in evidence.runs))
@@ -116,11 +117,12 @@ def strength(
     without, *tried = deviances([none, *starts])
     if min(tried) > without:
         return none
-    found, least = _likeliest(deviances, starts[int(np.argmin(tried))], (*SIZES, "lasting"))
+    told = any(ASIDE in e.channels for e in evidence.runs)
+    begun = replace(starts[int(np.argmin(tried))], share=PARTLY if told else 0.0)
+    found, least = _likeliest(deviances, begun, (*SIZES, "lasting", *(("share",) if told else ())))
     uneven = _felt(found)
     if uneven.moment or uneven.tremor:
-        told = uneven.moment and any(ASIDE in e.channels for e in evidence.runs)
-        begun = replace(found, share=MOSTLY if told else 1.0, bumps=uneven.tremor / (t_r / 2))
+        begun = replace(found, share=found.share if told else 1.0, bumps=uneven.tremor / (t_r / 2))
         found, least = _likeliest(deviances, begun, ("force", "body", *(("moment", "lasting", "share") if told else ())))
     return replace(_felt(found), fall=float(without - least))
 
