@@ -65,6 +65,9 @@ def test_gaps_are_bridged_and_too_few_readings_are_none():
     path[700:712] = np.nan
     found, whole = swing(time, path), swing(*seen(100.0, 5e-4))
     assert np.isfinite(found.slope).all() and np.abs(found.slope - whole.slope)[650:760].max() < 0.03
+    late = np.where(time > 10, time + 60, time)  # out of sight for a minute, over which it does not matter how it moved
+    away, inside = swing(late, path), (time > 1) & (time < 9) | (time > 11) & (time < 19)
+    assert np.abs(away.slope - whole.slope)[inside].max() < 0.03
     assert swing(time[:7], path[:7]) is None
     few = swing(0.001 * np.arange(10), path[:10])
     assert few is not None and np.isfinite(few.slope).all() and half_left(0.001 * np.arange(10), path[:10]) == FASTEST

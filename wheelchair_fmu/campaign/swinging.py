@@ -22,6 +22,7 @@ SLOWEST, FASTEST = 2.0, 9.0  # Hz, between which half of a body's motion may be 
 LIVELY = 8.0  # s of the most motion, by which it is found,
 OFTEN = 0.02  # s, from readings that are means over so long where they are more frequent
 FEWEST = 8  # readings that are smoothed at all
+APART = 1.0  # s of a gap, over which readings tell nothing of each other: one that is longer counts as so long
 DEGREE, STIFF = 5, 4  # of the B-splines, and of the derivative that counts
 KNOTS = 0.025  # s between knots, a few in each swing
 SLOPES = 0.0845  # ∫ x²/(1 + x⁸)² dx/π: the variance of a slope is so many times σ² dt ω_c³
@@ -44,6 +45,8 @@ def swing(time: np.ndarray, path: np.ndarray) -> Swing | None:
     t, y = time[there], path[there]
     if len(t) < FEWEST:
         return None
+    pressed = t[0] + np.cumsum(np.minimum(np.diff(t, prepend=t[0]), APART))
+    time, t = np.interp(time, t, pressed), pressed
     step = float(np.median(np.diff(t)))
     limit = 2 * np.pi * half_left(t, y)
     spline = _spline(t, y, step, limit)

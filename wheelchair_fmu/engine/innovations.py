@@ -88,6 +88,14 @@ class Disturbance:
         """How many there are, d."""
         return self.as_push.shape[1]
 
+    def pushed(self, path: np.ndarray) -> np.ndarray:
+        """What change of the recorded pushes (n, nq) they are along a `path` (n, d)."""
+        return np.asarray(path @ self.as_push.T)
+
+    def felt(self, path: np.ndarray) -> np.ndarray | float:
+        """What readings (n, nz) have of them there besides what they do to the chair."""
+        return 0.0 if self.as_reading is None else np.asarray(path @ self.as_reading.T)
+
 
 @cache
 def _library() -> ctypes.CDLL:

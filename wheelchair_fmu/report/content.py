@@ -21,10 +21,9 @@ from ..inference.evidence.likelihood import BODY, TOLERANCE, driven
 from ..inference.evidence.local import BaselineError, ClockError, Local, locals_of
 from ..inference.evidence.noise_model import (
     BODYS,
-    FORCED,
     GRAVITY,
     PLACES,
-    RECORDED,
+    RECORDS,
     RIDER,
     NoiseModel,
     disturbance,
@@ -124,8 +123,8 @@ def _forces(colour: NoiseModel) -> dict[str, Any] | None:
     found = disturbance(colour, (*EXTERNAL, RIDER), readings=felt)
     assert found.common is not None and found.as_reading is not None
     as_push = dict(zip(EXTERNAL, found.as_push[: len(EXTERNAL)].tolist(), strict=True))
-    recorded = np.isin(np.arange(FORCED), np.r_[RECORDED]).tolist()
-    sizes = {"sd": found.sd.tolist(), "body": BODYS.tolist(), "places": PLACES.tolist(), "recorded": recorded}
+    which = {"body": BODYS, "places": PLACES, "recorded": RECORDS}
+    sizes = {"sd": found.sd.tolist(), **{name: mask.tolist() for name, mask in which.items()}}
     as_reading = dict(zip(felt, found.as_reading.tolist(), strict=True))
     lasting = {"lasting": found.lasting.tolist(), "together": found.common.tolist()}
     return {**sizes, **lasting, "as_push": as_push, "as_reading": as_reading}

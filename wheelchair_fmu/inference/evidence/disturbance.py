@@ -20,7 +20,7 @@ from ...engine.innovations import ByForces, Disturbance, Whitener
 from ..parallel import parallel_map
 from .evidence import Evidence, RunEvidence
 from .likelihood import MASS, Likelihood
-from .noise_model import FORGOTTEN, NoiseModel, disturbance, pushes_of, stroke, strong_and_lasting
+from .noise_model import ASIDE, FORGOTTEN, NoiseModel, disturbance, pushes_of, stroke, strong_and_lasting
 
 SIZES = ("force", "moment", "body", "tremor")
 USUAL = np.array([5.0, 1.0, 5.0, 1.0])  # N, N m, N s and N m: a strength's prior falls by e over this
@@ -39,8 +39,7 @@ START = (
     (6.0,) * 4,
 )
 LASTING = (0.4, 1.3)  # m: a chair feels no slope for less than its own length; what lasts for longer is an effect
-ASIDE = "a_y"  # the channel that tells what share of the moment a floor has,
-SHARES, PARTLY = (0.03, 1.0), 0.7  # between which that may be, and from where it is sought
+SHARES, PARTLY = (0.03, 1.0), 0.7  # of the moment, between which a floor's may be, and from where it is sought
 PRECISE = 1e-7  # share by which −2 log posterior may still fall,
 NEARBY = 1e-5  # and share of a strength over which its slope is taken: over more, a minimum's slope is not 0
 ROUNDS = 5  # in which a path and a strength are found, at most,

@@ -142,8 +142,8 @@ class Likelihood:
         """A run at other `values` along a `path`, by the filter that it has."""
         assert isinstance(e.whitener, Marginal)
         results, driven = self._simulated(e.run, values, e.start, path)
-        pushed = path @ self._unknown(e.run, values).as_push.T
-        added = e.whitener.whitener.response(pushed) + self._felt(e.run, path)
+        unknown = self._unknown(e.run, values)
+        added = e.whitener.whitener.response(unknown.pushed(path)) + unknown.felt(path)
         return replace(e, results=results, driven=driven, path=path, added=added)
 
     def restarted(self, evidence: Evidence, values: Mapping[str, float]) -> Evidence:
@@ -189,14 +189,15 @@ class Likelihood:
         """Results (n, ny) and readings (n, nz) of a run, without derivatives, with forces of `path` (n, nd) acting, or with
         pushes larger than their record by `pushed` (n, nq)."""
         given, w = self._given(run, values, start)
+        felt: np.ndarray | float = 0.0
         if path is not None:
-            w = self._driven(run, w, path, values)
+            unknown = self._unknown(run, values)
+            w, felt = self._pushed(run, w, unknown.pushed(path)), unknown.felt(path)
         if pushed is not None:
             w = self._pushed(run, w, pushed)
         results = self.sensitivities.simulator.run(run.time, w, given, tolerance=TOLERANCE).results
         predicted = results.take([self.sensitivities.rows[i] for i in self._which(run)], axis=1)
-        read_ = read(run, self._channels(run), predicted, start)
-        return results, read_ if path is None else read_ + self._felt(run, path)
+        return results, read(run, self._channels(run), predicted, start) + felt
 
     def _tuned(self, run: Run, values: Mapping[str, float], by: tuple[str, ...], rounds: int) -> RunEvidence:
         """A run, started where its readings want it; one that is led, also where forces which nobody recorded lead it."""
@@ -339,17 +340,9 @@ class Likelihood:
         )
 
     def _unknown(self, run: Run, values: Mapping[str, float]) -> Disturbance:
-        return disturbance(self.noise_model, self._pushes(run), along=self.noise_model.along(self.chair(values)[MASS]))
-
-    def _felt(self, run: Run, path: np.ndarray) -> np.ndarray:
-        """What readings (n, nz) have of forces along a path (n, nd) besides what these do to the chair."""
-        by = disturbance(self.noise_model, self._pushes(run), readings=self._channels(run)).as_reading
-        assert by is not None
-        return np.asarray(path @ by.T)
-
-    def _driven(self, run: Run, w: np.ndarray, path: np.ndarray, values: Mapping[str, float]) -> np.ndarray:
-        """Inputs (n, nw) with forces that nobody recorded."""
-        return self._pushed(run, w, path @ self._unknown(run, values).as_push.T)
+        """The forces on a chair of these values."""
+        along, readings = self.noise_model.along(self.chair(values)[MASS]), self._channels(run)
+        return disturbance(self.noise_model, self._pushes(run), along=along, readings=readings)
 
     def _pushed(self, run: Run, w: np.ndarray, pushed: np.ndarray) -> np.ndarray:
         """Inputs (n, nw) with pushes larger than their record by `pushed`."""
@@ -373,9 +366,9 @@ class Likelihood:
         out, asked = np.zeros((*found.r.shape, len(by))), [name for name in INERT if name in by]
         if not asked:
             return out
-        chair, as_push = self.chair(values), self._unknown(run, values).as_push
-        m, b, pushed = chair[MASS], chair["chair.b"], found.path @ as_push.T
-        r = found.whitener.states(pushed)[:, self._yawing]
+        chair, unknown = self.chair(values), self._unknown(run, values)
+        m, b, as_push = chair[MASS], chair["chair.b"], unknown.as_push
+        r = found.whitener.states(unknown.pushed(found.path))[:, self._yawing]
         bends, u = np.gradient(r, run.time), found.results[:, self.sensitivities.results.index("chair.u")]
         resists = {MASS: b * (b * bends + u * r), "chair.I_z": bends, "chair.b": m * (2 * b * bends + u * r)}
         for name in asked:

@@ -32,10 +32,12 @@ PATCH = 0.05  # m over which a bump is forgotten that a wheel rolls over: as lon
 # slope to the side, those of the body, and those of what a record of its motion has wrong: which is which,
 MOMENT, FLOOR, ACROSS, SWINGS = 1, 4, 5, slice(6, 6 + len(SWUNG))
 RECORDED = slice(SWINGS.stop, SWINGS.stop + len(HASTY))
-FORCED = RECORDED.stop  # how many there are, which are the body's
-BODYS, PLACES = (np.isin(np.arange(FORCED), np.r_[which]) for which in (SWINGS, slice(1, SWINGS.start)))  # and a floor's,
+FORCED = RECORDED.stop  # how many there are,
+# which are the body's, which has a floor in it, which are of a record,
+BODYS, PLACES, RECORDS = (np.isin(np.arange(FORCED), np.r_[which]) for which in (SWINGS, slice(1, SWINGS.start), RECORDED))
 ALONG = (0, 3, FLOOR, *range(SWINGS.start, FORCED))  # and those that push along the heading
-GRAVITY = {"a_x": FLOOR, "a_y": ACROSS}  # accelerometers, and what moves a chair and is nothing that they feel
+AHEAD, ASIDE = "a_x", "a_y"  # accelerometers,
+GRAVITY = {AHEAD: FLOOR, ASIDE: ACROSS}  # and what moves a chair and is nothing that they feel
 DIES_OUT = 0.6  # s in which a body's swing of 1.3 Hz and a fifth of the critical damping falls by e
 GRID = 0.01  # s, of the pushes as they swing a body
 
@@ -171,10 +173,10 @@ def disturbance(
     for name, (ahead, turning) in shares.items():
         pushed, back = along * ahead, np.concatenate((np.sign(body.rates), recorded * np.sign(wrong.rates)))
         as_push[inputs.index(name)] = [pushed, turning, turning, pushed, pushed, turning, *(-pushed * back)]
-    return Disturbance(*strong_and_lasting(noise_model, swinging, speed), as_push, common, _felt(noise_model, readings))
+    return Disturbance(*strong_and_lasting(noise_model, swinging, speed), as_push, common, _as_reading(noise_model, readings))
 
 
-def _felt(noise_model: NoiseModel, readings: Sequence[str]) -> np.ndarray:
+def _as_reading(noise_model: NoiseModel, readings: Sequence[str]) -> np.ndarray:
     """What a unit of each process adds to these readings (nz, d) besides what it does to the chair: less the gravity that is
     among what moves it, F/m along the heading and M/(m b) to the side, of a chair whose mass and lever are known."""
     out = np.zeros((len(readings), FORCED))
