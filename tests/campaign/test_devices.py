@@ -230,6 +230,14 @@ def test_faults(lab, old, new, expected):
     assert any(expected in fault for fault in found), found
 
 
+@pytest.mark.parametrize("drift", [-3, 40])
+def test_a_drift_that_no_clock_has_is_one_fault(lab, drift):
+    """It is left out, so that the device is not also said to have recorded at another time."""
+    edited(lab, "sd = 0.002", f"drift = {drift}")
+    said = [fault.fact for fault in check(lab) if fault.severity == "error"]
+    assert said == [f"run 1: the clock of imu has drift = {drift}, but no clock gains so much"]
+
+
 def test_of_a_devices_other_columns_only_a_misspelt_one_is_worth_a_word(lab):
     frame = pd.read_csv(lab / "one_imu.csv")
     frame.assign(**{"yawrate [deg/s]": 1.0, "a_y [g]": 0.0, "gyro x": 0.0}).to_csv(lab / "one_imu.csv", index=False)

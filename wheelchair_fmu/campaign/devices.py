@@ -24,6 +24,8 @@ from typing import Any
 from .document import Document, Entry, number
 from .formats import known_options
 
+FASTEST = 0.1  # s/s that a clock drifts; the oscillators inside inertial sensors are off by some hundredths at most
+
 
 @dataclass(frozen=True)
 class Clock:
@@ -91,11 +93,12 @@ def parts(doc: Document, entry: Entry) -> list[Part]:
 
 
 def clock(entry: Entry, device: str) -> Clock:
-    """How a device's clock stands in a run: `clocks = { imu = 0.41 }`, or with offset, sd and drift."""
+    """How a device's clock stands in a run: `clocks = { imu = 0.41 }`, or with offset, sd and drift. What no clock can be, of
+    which checks/document.py tells, is left out, so that nothing else seems wrong for it."""
     given = entry.table("clocks").get(device)
     if isinstance(given, Mapping):
         offset, sd, drift = (number(given.get(key)) or 0.0 for key in ("offset", "sd", "drift"))
-        return Clock(offset, max(sd, 0.0), drift)
+        return Clock(offset, max(sd, 0.0), drift if abs(drift) <= FASTEST else 0.0)
     return Clock(number(given) or 0.0)
 
 

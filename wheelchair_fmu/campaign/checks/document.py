@@ -16,7 +16,7 @@ from .. import body
 from ..axes import ISO, SAE
 from ..channels import BY_FMU_NAME, BY_NAME, CHANNEL_NAMES, INPUTS, MOUNTED, SOURCES, TIME, Channel
 from ..derived import ENDS
-from ..devices import devices, parts, point, point_of
+from ..devices import FASTEST, devices, parts, point, point_of
 from ..document import REPEATED, Document, Entry, flatten, number
 from ..draft import constant_value
 from ..formats import formats, known_options
@@ -35,7 +35,6 @@ ROLES = ("fit", "holdout")
 OFF = f"is more than {FARTHEST:g} m from the centre of mass, off any chair"
 CURES_OF_KINDS = {"point": "give two numbers, [x, y] in m"}
 CLOCK_KEYS = ("offset", "sd", "drift")
-FASTEST = 0.1  # s/s; the oscillators inside inertial sensors are off by some hundredths at most
 MOST_KEYS = 1000  # of a table; all parameters together are some hundred
 
 
