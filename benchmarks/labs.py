@@ -1,5 +1,6 @@
 """Lab folders from raw files to the verdict, beside what was hidden: `python -m benchmarks.labs [LAB ...] [--drawn SEED ...]
-[--casters]`.
+[--casters]
+[--worn]`.
 
 A number after `--drawn` is a lab that benchmarks/independent/labs.py draws. Each is imported as docs/lab.md does it, with the
 lines of its protocol that no file holds, and diagnosed. Printed is what is said, and how far off: clocks and baselines in
@@ -68,9 +69,9 @@ def recorded(measurements: Path, name: str) -> Lab:
     return Lab(measurements / name, answers[name], dict(zip(OPTIONS, GIVEN[name], strict=True)), AT.get(name, ""))
 
 
-def drawn(out: Path, seed: int) -> Lab:
+def drawn(out: Path, seed: int, worn: bool = False) -> Lab:
     """One whose raw files are written into a folder."""
-    answer = write(out, seed)
+    answer = write(out, seed, worn)
     return Lab(out, answer, {f"--{name}": size for name, size in answer["given"].items()})
 
 
@@ -232,6 +233,7 @@ def main() -> None:
     parser.add_argument("--measurements", type=Path, default=MEASUREMENTS, help="the folder with the labs and their answers")
     parser.add_argument("--unfilmed", action="store_true", help="leave out markers of the rider's body")
     parser.add_argument("--casters", action="store_true", help="give the casters' trail and the wheels' inertia as well")
+    parser.add_argument("--worn", action="store_true", help="draw labs whose casters hold, of a heavy rider who was filmed")
     parser.add_argument("--out", type=Path, default=Path("out/labs"), help="what was found is kept here")
     chosen = parser.parse_args()
     chosen.out.mkdir(parents=True, exist_ok=True)
@@ -239,7 +241,7 @@ def main() -> None:
     for name in chosen.labs or ([] if chosen.drawn else GIVEN):
         told(name, lambda _, name=name: recorded(chosen.measurements, name), chosen.out, not chosen.unfilmed, more)
     for seed in chosen.drawn:
-        told(f"drawn-{seed}", lambda raw, seed=seed: drawn(raw, seed), chosen.out, not chosen.unfilmed, more)
+        told(f"drawn-{seed}", lambda raw, seed=seed: drawn(raw, seed, chosen.worn), chosen.out, not chosen.unfilmed, more)
 
 
 def told(name: str, lab: Callable[[Path], Lab], out: Path, filmed: bool, more: Mapping[str, float]) -> None:

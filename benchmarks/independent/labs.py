@@ -4,6 +4,9 @@
 and a rider are drawn who differ from the protocol as far as scales and tapes allow; floors are uneven, each logger has a clock
 of its own, torque rims have a baseline and a ripple, and the rider's body answers the pushes and moves by itself besides. In
 every third lab it was filmed.
+
+`--worn` draws labs of the kind that recordings of a person are: a heavy rider who goes straight and was filmed, no sensor on
+the frame, torque rims a newton metre or more off, and casters whose bearings hold with 0.2 to 0.5 N m.
 """
 
 from __future__ import annotations
@@ -51,6 +54,7 @@ NOISE = {
     "s": 0.002,
 }  # N m, m/s, °/s, m/s², m, °, m
 RATES = {"left": 240.0, "right": 200.0, "frame": 100.0, "markers": 100.0}
+WORN = {"left": 240.0, "right": 240.0, "markers": 150.0}
 FILMED = 0.6  # of all that was weighed, what moves as the filmed part of the rider's body does
 SETTLING = 1.5  # s of a run that its figures leave out
 
@@ -69,6 +73,15 @@ class Rider:
     weave: float = 0.0
 
 
+STRAIGHT = (
+    Rider("straight, own pace", 70, 28),
+    Rider("straight, slow", 40, 18),
+    Rider("straight, fast", 85, 38),
+    Rider("four pushes, then hands off", 60, 50, until=5.5),
+    Rider("three pushes, then hands off", 50, 50, until=4.5),
+    Rider("kept: straight, own pace", 70, 28),
+    Rider("kept: straight, fast from the start", 90, 40),
+)
 RUNS = (
     Rider("straight, own pace", 70, 28),
     Rider("a coast-down", 85, 70, until=6.0),
@@ -88,17 +101,20 @@ class Lab:
     radius: float
     spin: float
     ripple: Mapping[str, float]
+    baseline: float
     independent: float
     filmed: bool
     told: Mapping[str, float]
+    runs: tuple[Rider, ...]
+    rates: Mapping[str, float]
 
 
-def lab(seed: int) -> tuple[Lab, tuple[str, ...], tuple[str, ...]]:
+def lab(seed: int, worn: bool = False) -> tuple[Lab, tuple[str, ...], tuple[str, ...]]:
     """What a seed draws, what is hidden in it, and all names that say it fairly."""
     rng = np.random.default_rng([seed, 1])
-    effects, fair = HIDDEN[seed % len(HIDDEN)]
+    effects, fair = ({}, ()) if worn else HIDDEN[seed % len(HIDDEN)]
     m, base, radius, spin = rng.uniform(75, 120), rng.uniform(0.38, 0.45), 0.305, 0.12
-    b, strong = rng.uniform(0.08, 0.18), seed % 3 == 0
+    b, strong = rng.uniform(0.08, 0.18), worn or seed % 3 == 0
     chair = Chair(
         m=m,
         I_z=m * rng.uniform(0.05, 0.065),
@@ -116,6 +132,9 @@ def lab(seed: int) -> tuple[Lab, tuple[str, ...], tuple[str, ...]]:
         m_spin=2 * spin / radius**2,
         floor=rng.uniform(0.001, 0.003),
     )
+    if worn:
+        heavier = rng.uniform(115, 125) / m
+        m, chair = m * heavier, replace(chair, m=m * heavier, I_z=chair.I_z * heavier, swivel_dry=rng.uniform(0.2, 0.5))
     told = {
         "mass": round(m + rng.normal(0, 2.5)),
         "radius": round(radius + rng.normal(0, 0.001), 3),
@@ -126,9 +145,21 @@ def lab(seed: int) -> tuple[Lab, tuple[str, ...], tuple[str, ...]]:
     }
     if strong:
         told["person"] = round(FILMED * told["mass"], 1)
-    ripple = {"left": rng.uniform(0, 0.6), "right": rng.uniform(0, 0.3)}
+    ripple = {"left": rng.uniform(1, 1.5) if worn else rng.uniform(0, 0.6), "right": rng.uniform(0, 0.3)}
     truth = hide(Truth(chair=chair), effects)
-    return Lab(truth, radius, spin, ripple, 0.35 if strong else 0.2, strong, told), tuple(effects), fair
+    drawn = Lab(
+        truth=truth,
+        radius=radius,
+        spin=spin,
+        ripple=ripple,
+        baseline=1.0 if worn else 0.3,
+        independent=0.35 if strong else 0.2,
+        filmed=strong,
+        told=told,
+        runs=STRAIGHT if worn else RUNS,
+        rates=WORN if worn else RATES,
+    )
+    return drawn, tuple(effects), fair
 
 
 def pushes(run: Rider, mass: float, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -164,12 +195,12 @@ def _slow(values: np.ndarray, seconds: float) -> np.ndarray:
     return out
 
 
-def write(folder: Path, seed: int) -> dict[str, Any]:
+def write(folder: Path, seed: int, worn: bool = False) -> dict[str, Any]:
     """A lab's raw files, and its answer."""
-    drawn, effects, fair = lab(seed)
+    drawn, effects, fair = lab(seed, worn)
     folder.mkdir(parents=True, exist_ok=True)
     runs, floors = {}, {}
-    for number, run in enumerate(RUNS, 1):
+    for number, run in enumerate(drawn.runs, 1):
         name = f"run{number:02d}"
         runs[name], held = _run(folder, name, run, drawn, np.random.default_rng([seed, 2, number]))
         if held:
@@ -208,14 +239,14 @@ def _run(folder: Path, name: str, run: Rider, drawn: Lab, rng: np.random.Generat
     start = Start(x=place[0], y=place[1], yaw=heading, swivel_r=turned[0], swivel_l=turned[1])
     chair = drawn.truth.chair
     true = simulate(chair, left, right, start, urge=moved, interval=FINE, steps=25)
-    baseline = {side: rng.normal(0, 0.3) for side in ("left", "right")}
+    baseline = {side: drawn.baseline * rng.normal() for side in ("left", "right")}
     devices = dict(_devices(time, left, right, true, drawn, baseline, rng))
     files = {}
-    for device, columns in devices.items():
+    for device, columns in ((d, c) for d, c in devices.items() if d in drawn.rates):
         offset, ppm = rng.uniform(0.0, 1.0), rng.normal(0, 20)
         file = f"{name}_{device}.csv"
-        (folder / file).write_text(_logged(time, columns, RATES[device], offset, ppm, rng), encoding="utf-8")
-        files[file] = {"offset_s": offset, "ppm": ppm, "rate": RATES[device]}
+        (folder / file).write_text(_logged(time, columns, drawn.rates[device], offset, ppm, rng), encoding="utf-8")
+        files[file] = {"offset_s": offset, "ppm": ppm, "rate": drawn.rates[device]}
     role = "holdout" if run.what.startswith("kept") else "fit"
     told = {"what": run.what, "role": role, "files": files, "baseline_Nm": baseline, "caster_start_rad": turned.tolist()}
     if role == "fit":
@@ -293,8 +324,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.independent.labs", description=__doc__)
     parser.add_argument("out", type=Path, help="folder to write")
     parser.add_argument("--seeds", type=int, nargs="+", default=[1], help="a lab each")
+    parser.add_argument("--worn", action="store_true", help="labs of the kind that recordings of a person are")
     chosen = parser.parse_args()
-    answers = {f"lab-{seed}": write(chosen.out / f"lab-{seed}", seed) for seed in chosen.seeds}
+    answers = {f"lab-{seed}": write(chosen.out / f"lab-{seed}", seed, chosen.worn) for seed in chosen.seeds}
     (chosen.out / "answers.json").write_text(json.dumps(answers, indent=1) + "\n", encoding="utf-8")
 
 
