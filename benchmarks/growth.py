@@ -17,7 +17,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from wheelchair_fmu.campaign import Campaign, Run, read
-from wheelchair_fmu.inference.estimation.fit import fit, start_values
+from wheelchair_fmu.inference.estimation.fit import fit
+from wheelchair_fmu.inference.estimation.problem import start_values
 from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.models.factory import ModelFactory
 from wheelchair_fmu.inference.models.hypothesis import Model

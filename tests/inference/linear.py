@@ -9,7 +9,7 @@ import numpy as np
 from scipy.signal import lfilter
 
 from wheelchair_fmu.campaign import Run
-from wheelchair_fmu.inference.estimation.fit import Fit
+from wheelchair_fmu.inference.estimation.problem import Fit
 from wheelchair_fmu.inference.evidence.evidence import Evidence, FilterSummary, RunEvidence
 
 STEP = 0.01  # s

@@ -13,7 +13,7 @@ from benchmarks.independent.campaigns import make
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.errors import SimulationError
 from wheelchair_fmu.inference.decision.verdict import diagnose
-from wheelchair_fmu.inference.estimation.fit import prior_of
+from wheelchair_fmu.inference.estimation.problem import prior_of
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.models.factory import ModelFactory
 from wheelchair_fmu.inference.models.models import Models

@@ -12,8 +12,8 @@ from tests.inference.linear import evidence, least_squares, noise, signals, valu
 from wheelchair_fmu.campaign import Campaign, read
 from wheelchair_fmu.inference.decision.ahead import Ahead, which_to_fit
 from wheelchair_fmu.inference.decision.verdict import diagnose
-from wheelchair_fmu.inference.estimation.fit import Fit
 from wheelchair_fmu.inference.estimation.foretelling import unforetold
+from wheelchair_fmu.inference.estimation.problem import Fit
 from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.explain.ranking import as_json
 from wheelchair_fmu.inference.policy import DEFAULT

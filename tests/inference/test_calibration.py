@@ -11,7 +11,7 @@ from benchmarks.independent.campaigns import make, truth
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.inference.decision.verdict import diagnose
 from wheelchair_fmu.inference.estimation.calibration import at_bound, calibration, doubts
-from wheelchair_fmu.inference.estimation.fit import Problem
+from wheelchair_fmu.inference.estimation.problem import Problem
 from wheelchair_fmu.inference.explain.story import story
 from wheelchair_fmu.inference.models.factory import MEASURED, ModelFactory
 from wheelchair_fmu.inference.models.models import Models

@@ -9,7 +9,7 @@ import pytest
 
 from wheelchair_fmu.inference.decision.ahead import Ahead
 from wheelchair_fmu.inference.decision.decide import Facts, decide, insufficient, share_seen
-from wheelchair_fmu.inference.estimation.fit import Fit
+from wheelchair_fmu.inference.estimation.problem import Fit
 from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.policy import DEFAULT
 from wheelchair_fmu.inference.residual.staircase import Step

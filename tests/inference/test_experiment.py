@@ -9,7 +9,7 @@ import pytest
 
 from wheelchair_fmu.handling.experiments import experiments
 from wheelchair_fmu.inference.decision.experiment import _imagined
-from wheelchair_fmu.inference.estimation.fit import Fit
+from wheelchair_fmu.inference.estimation.problem import Fit
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.evidence.noise_model import NoiseModel
 from wheelchair_fmu.model.variant import Variant

@@ -11,7 +11,8 @@ from benchmarks.independent.campaigns import AR1, make
 from benchmarks.independent.hidden import usual
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.inference.estimation import fit as fitting
-from wheelchair_fmu.inference.estimation.fit import Problem, fit
+from wheelchair_fmu.inference.estimation.fit import fit
+from wheelchair_fmu.inference.estimation.problem import Problem
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.evidence.noise import NoiseModel
 from wheelchair_fmu.model.variant import Variant

@@ -12,8 +12,8 @@ from benchmarks.independent.campaigns import make
 from tests.inference.linear import evidence, least_squares, noise, signals, values
 from wheelchair_fmu.campaign import read
 from wheelchair_fmu.inference.decision.verdict import diagnose
-from wheelchair_fmu.inference.estimation.fit import Fit
 from wheelchair_fmu.inference.estimation.foretelling import foretold_by
+from wheelchair_fmu.inference.estimation.problem import Fit
 from wheelchair_fmu.inference.estimation.statistics import difference_blocks, held_out_gain
 from wheelchair_fmu.inference.evidence.evidence import Evidence, FilterSummary
 

@@ -10,7 +10,7 @@ import pytest
 from tests.flips import flipping
 from wheelchair_fmu.campaign import Campaign
 from wheelchair_fmu.inference.evidence.evidence import RunEvidence
-from wheelchair_fmu.inference.evidence.likelihood import HELD, STEPPED, Likelihood
+from wheelchair_fmu.inference.evidence.likelihood import HELD, Likelihood
 from wheelchair_fmu.inference.evidence.noise_model import NoiseModel
 from wheelchair_fmu.model.variant import Variant
 
@@ -63,16 +63,11 @@ def test_the_forces_that_lead_a_run_are_the_likeliest(campaign, strong, f_f, sha
     assert min(unlikely(likelihood, e, values, times * e.path) for times in (0.98, 1.02)) > least
 
 
-def test_a_run_stays_on_its_path_or_goes_one_step_where_no_more_is_asked(campaign):
-    """Whatever comes of the step: from no path, a whole one leads anywhere here."""
+def test_a_run_stays_on_its_path_where_no_more_is_asked(campaign):
     likelihood, values = led(campaign, 1.0), wrong(0.026)
     end = likelihood.evidence(campaign.fit, values)
     (there,), (stays,) = end.runs, likelihood.beside(end, HELD).evidence(campaign.fit, values).runs
     np.testing.assert_array_equal(stays.path, there.path)
-    none = likelihood._with(goes=HELD).evidence(campaign.fit, values)
-    (steps,) = likelihood.beside(none, STEPPED).evidence(campaign.fit, values).runs
-    assert steps.path.any()
-    assert unlikely(likelihood, steps, values, steps.path) > 2 * unlikely(likelihood, there, values, there.path)
 
 
 def test_models_that_are_compared_are_asked_by_the_same_readings(campaign):

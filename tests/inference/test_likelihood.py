@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wheelchair_fmu.inference.estimation.fit import fit, prior_of
+from wheelchair_fmu.inference.estimation.fit import fit
+from wheelchair_fmu.inference.estimation.problem import prior_of
 from wheelchair_fmu.inference.estimation.score import _long_run_variance
 from wheelchair_fmu.inference.evidence.evidence import Begin
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood

@@ -8,7 +8,7 @@ from types import SimpleNamespace as Some
 import numpy as np
 import pytest
 
-from wheelchair_fmu.inference.estimation.fit import Fit
+from wheelchair_fmu.inference.estimation.problem import Fit
 from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.models.hypothesis import Model
 from wheelchair_fmu.inference.policy import DEFAULT, USUAL

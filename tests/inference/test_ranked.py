@@ -10,7 +10,7 @@ from scipy import special
 
 from tests.inference.linear import evidence
 from wheelchair_fmu.inference.decision import decide
-from wheelchair_fmu.inference.estimation.fit import Fit
+from wheelchair_fmu.inference.estimation.problem import Fit
 from wheelchair_fmu.inference.evidence.evidence import Evidence
 from wheelchair_fmu.inference.policy import DEFAULT
 from wheelchair_fmu.inference.search.candidate import Candidate, ranked

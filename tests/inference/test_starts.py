@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from wheelchair_fmu.inference.estimation import starts
-from wheelchair_fmu.inference.estimation.fit import Problem, fit
+from wheelchair_fmu.inference.estimation.fit import fit
+from wheelchair_fmu.inference.estimation.problem import Problem
 from wheelchair_fmu.inference.estimation.starts import most_promising, outlook
 from wheelchair_fmu.inference.estimation.statistics import standard_errors
 from wheelchair_fmu.inference.models.factory import CALIBRATED, ModelFactory

@@ -18,6 +18,7 @@ from wheelchair_fmu.campaign import Clock
 from wheelchair_fmu.inference.chance import student
 from wheelchair_fmu.inference.decision.bootstrap import _estimates
 from wheelchair_fmu.inference.estimation.interval import NORMAL, half_width
+from wheelchair_fmu.inference.estimation.left_out import left_out
 from wheelchair_fmu.inference.estimation.own_constant import own_constant
 from wheelchair_fmu.inference.estimation.score import Projector, robust_variance, score
 from wheelchair_fmu.inference.estimation.statistics import (
@@ -170,6 +171,20 @@ def test_between_runs_alike_it_is_the_scatter_of_their_own_estimates():
     slope = found.evidence.runs[0].S[:, 0, :]
     off = np.array([np.linalg.lstsq(slope, e.r[:, 0], rcond=None)[0] for e in found.evidence.runs])
     np.testing.assert_allclose(between_runs(found), off.T @ off / (5 * 4), rtol=1e-9)
+
+
+def test_what_filters_tell_of_a_run_has_it_elsewhere_as_its_readings_do():
+    """A run whose readings are off by S a pulls as one does whose filter tells of Sᵀ S a."""
+    (found, _), *_ = differing(4, 1, uneven=True)
+    moved, told = [], []
+    for e, a in zip(found.evidence.runs, np.random.default_rng(5).normal(size=(4, 2)), strict=True):
+        S = e.S[e.finite]
+        moved.append(replace(e, r=e.r + e.S @ a))
+        told.append(replace(e, beyond=S.T @ S @ a))
+    by_readings, by_filters = (replace(found, evidence=replace(found.evidence, runs=tuple(runs))) for runs in (moved, told))
+    np.testing.assert_allclose(between_runs(by_filters), between_runs(by_readings), rtol=1e-9)
+    for run, out in left_out(by_readings).items():
+        np.testing.assert_allclose(left_out(by_filters)[run].moved, out.moved, rtol=1e-9)
 
 
 def test_of_what_only_a_prior_knows_runs_have_nothing_to_differ_in():

@@ -8,7 +8,7 @@ import pytest
 from wheelchair_fmu.api.lacking import missing
 from wheelchair_fmu.campaign.strokes import begun, phase
 from wheelchair_fmu.inference.decision.verdict import diagnose
-from wheelchair_fmu.inference.estimation.fit import Fit
+from wheelchair_fmu.inference.estimation.problem import Fit
 from wheelchair_fmu.inference.evidence.disturbance import Strength, strength
 from wheelchair_fmu.inference.evidence.likelihood import Likelihood
 from wheelchair_fmu.inference.evidence.noise_model import NoiseModel

@@ -12,7 +12,8 @@ from typing import TypeVar
 from ..campaign import Campaign, condensed, pieces, windows
 from ..errors import UsageError, unknown
 from ..inference.estimation.calibration import Calibrated, calibration, doubts
-from ..inference.estimation.fit import fit, start_values
+from ..inference.estimation.fit import fit
+from ..inference.estimation.problem import start_values
 from ..inference.evidence.initial_state import TUNING
 from ..inference.evidence.likelihood import Likelihood
 from ..inference.residual.compare import Comparison, RunErrors, errors_of, together

@@ -17,7 +17,7 @@ import pandas as pd
 from .. import campaign as measured
 from ..campaign import BY_NAME
 from ..fmu.build import build, with_chosen_effects
-from ..inference.estimation.fit import Problem
+from ..inference.estimation.problem import Problem
 from ..inference.evidence.initial_state import START, prior_start, start_sd
 from ..inference.evidence.likelihood import Likelihood
 from ..inference.models.factory import CALIBRATED

@@ -27,7 +27,7 @@ from ..campaign.importing import SIZES
 from ..errors import UsageError, WheelchairError, unknown
 from ..fmu.build import build
 from ..fmu.parameter_set import from_variant, text
-from ..inference.estimation.fit import AT_BOUND
+from ..inference.estimation.problem import AT_BOUND
 from ..inference.models.factory import CALIBRATED
 from ..inference.subject import known_parameters
 from ..model.arithmetic import shown as cut

@@ -643,16 +643,6 @@ static int lead(const wc_recording *s, const wc_values *v, wc_evaluation *e) {
     return WC_OK;
 }
 
-/* One whole step from a path that is nearly the likeliest, whatever comes of it: the next one changes smoothly with the values. */
-static int lead_on(const wc_recording *s, const wc_values *v, wc_evaluation *e) {
-    double better[WC_MOST];
-    better_start(s, e, e->own.r, s->n, better);
-    follow(s, e, s->n);
-    memcpy(e->own.start, better, sizeof(double) * (size_t)uncertain(s));
-    for (long i = 0; i < s->n * s->noise.nd; i++) e->path[i] += e->step[i];
-    return linearise(s, v, e);
-}
-
 static int tune(const wc_recording *s, const wc_values *v, wc_evaluation *e, int rounds) {
     for (int k = 0; k < rounds; k++) {
         double better[WC_MOST];
@@ -676,7 +666,7 @@ int wc_evaluate(const wc_recording *s, const wc_values *v, wc_evaluation *e, int
     *e->reached = 0;
     if (states(s) + s->noise.nq + s->noise.nd + s->noise.nz > WC_MOST || uncertain(s) > WC_MOST) return WC_TOO_MANY;
     int status = linearise(s, v, e);
-    if (status == WC_OK && rounds) status = !s->leads ? tune(s, v, e, rounds) : rounds < 0 ? lead_on(s, v, e) : lead(s, v, e);
+    if (status == WC_OK && rounds) status = s->leads ? lead(s, v, e) : tune(s, v, e, rounds);
     return status;
 }
 

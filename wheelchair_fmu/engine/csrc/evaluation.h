@@ -109,8 +109,8 @@ long wc_simulated_room(const wc_recording *s, wc_simulated *to, double *block);
 void wc_expected(const wc_recording *s, wc_evaluation *e);
 
 /* From e->own.start along e->path, with e->pushed. `rounds`: how often at most the start is moved to where the readings want it; a
- * run that is led stays on its path if that is 0, goes one step from there if it is negative, and else to where forces lead it. On
- * failure e->reached says how far it came. */
+ * run that is led stays on its path if that is 0, and else goes to where forces lead it. On failure e->reached says how far it
+ * came. */
 int wc_evaluate(const wc_recording *s, const wc_values *v, wc_evaluation *e, int rounds);
 
 /* Where casters may swing round, after wc_evaluate(): on to where errors of the pushes lead the run, by as many steps as slopes do

@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 from ...errors import SimulationError
-from ..estimation.fit import Fit
+from ..estimation.problem import Fit
 from ..evidence.disturbance import Strength, acting, strength
 from ..evidence.evidence import Evidence
 from ..evidence.noise_model import NoiseModel

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..estimation.fit import Fit
+from ..estimation.problem import Fit
 from ..estimation.statistics import decisive, difference_blocks
 from ..evidence.evidence import Evidence, blocks_of
 from ..search.rounds import Round

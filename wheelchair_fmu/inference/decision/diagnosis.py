@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from ..estimation.calibration import Calibrated
-from ..estimation.fit import Fit
+from ..estimation.problem import Fit
 from ..models.models import Models
 from ..preflight.timing import Late
 from ..residual.staircase import Step

@@ -11,8 +11,8 @@ import numpy as np
 
 from ...campaign import CHANNELS, Run, moving
 from ...errors import SimulationError
-from ..estimation.fit import Fit, Problem, prior_of
 from ..estimation.inverse import inverse
+from ..estimation.problem import Fit, Problem, prior_of
 from ..estimation.statistics import decisive
 from ..evidence.evidence import Begin
 from ..evidence.likelihood import Likelihood

@@ -10,9 +10,9 @@ import numpy as np
 from ...campaign import Run
 from ...quantities import Parameter
 from ..estimation.calibration import at_bound
-from ..estimation.fit import Fit
 from ..estimation.interval import interval_by_errors
 from ..estimation.own_constant import own_constant
+from ..estimation.problem import Fit
 from ..estimation.statistics import finite, sandwich
 from ..evidence.evidence import Evidence, RunEvidence
 from ..evidence.likelihood import Likelihood

@@ -9,7 +9,7 @@ from ...campaign import Campaign, windows
 from ...errors import Failure
 from ...model.variant import Variant
 from ...quantities import Parameter
-from ..estimation.fit import Fit
+from ..estimation.problem import Fit
 from ..estimation.statistics import standard_errors
 from ..models.factory import ModelFactory
 from ..models.hypothesis import Model

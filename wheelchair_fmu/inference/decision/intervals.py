@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..estimation.fit import Fit
 from ..estimation.interval import interval_by_errors, profile_interval, widened
+from ..estimation.problem import Fit
 from ..estimation.score import Score
 from ..estimation.unnamed import allowance
 from ..models.hypothesis import Model

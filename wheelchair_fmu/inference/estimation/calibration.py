@@ -10,7 +10,7 @@ import numpy as np
 
 from ...quantities import Parameter
 from ..evidence.likelihood import Likelihood
-from .fit import REACH, Fit, Problem, sizes_an_effect
+from .problem import REACH, Fit, Problem, sizes_an_effect
 from .statistics import finite, standard_errors
 
 DOUBTED = 2.0  # standard deviations of its prior by which a value is said to be off

@@ -14,8 +14,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..evidence.evidence import Evidence, RunEvidence, blocks_of
-from .fit import Fit
 from .inverse import inverse
+from .problem import Fit
 
 
 def foretold_by(found: Fit, held: Evidence, prior: np.ndarray) -> Evidence:

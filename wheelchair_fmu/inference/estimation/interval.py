@@ -18,8 +18,8 @@ from ...quantities import Parameter
 from ..chance import student, value_beyond
 from ..evidence.likelihood import Likelihood
 from ..parallel import parallel_map
-from .fit import Fit, Problem
 from .inverse import inverse
+from .problem import Fit, Problem
 from .score import RUNS
 from .statistics import between_runs, degrees_between_runs, sandwich
 

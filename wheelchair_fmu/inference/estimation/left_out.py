@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .fit import Fit
+from .problem import Fit
 
 TOLD = 1e-6  # of what all runs tell along a direction: others that tell less tell nothing
 
@@ -34,7 +34,7 @@ def left_out(found: Fit) -> dict[str, LeftOut]:
     for e, S in runs:
         size, axes, sure = _told(whole - S.T @ S, scale)
         told = np.maximum(size, TOLD)
-        pull = np.where(size > TOLD, axes.T @ (S.T @ e.r[e.finite] / scale), 0.0)
+        pull = np.where(size > TOLD, axes.T @ (e.pull / scale), 0.0)
         without[e.run.name] = LeftOut(
             moved=-(axes @ (pull / told)) / scale,
             wider=np.maximum(1.0, sure / known),

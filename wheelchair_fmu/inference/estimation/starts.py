@@ -12,8 +12,8 @@ from ...errors import SimulationError
 from ..evidence.evidence import Evidence
 from ..evidence.likelihood import Likelihood
 from ..parallel import parallel_map
-from .fit import Problem
 from .inverse import inverse
+from .problem import Problem
 
 GLANCED = 2  # runs on which all are tried, and of them
 LOOKED_AT = 2  # times as many as are wanted on every run

@@ -11,8 +11,8 @@ from scipy.optimize import lsq_linear
 from ..chance import student
 from ..evidence.evidence import Evidence, RunEvidence, blocks_of
 from ..policy import DEFAULT, SearchPolicy
-from .fit import Fit
 from .inverse import inverse
+from .problem import Fit
 from .score import SEEN, Score, robust_variance
 
 RESAMPLES = 400
@@ -61,10 +61,11 @@ def standard_errors(found: Fit) -> dict[str, float]:
 def between_runs(found: Fit) -> np.ndarray:
     """Covariance (k, k) of the estimates by how far runs would have them apart, which shows where a model is not exact: all
     residuals of a run may err together (Bell and McCaffrey 2002, so that few runs are no reason to be sure)."""
-    r, known = found.evidence.r, _inverse(found)
+    known = _inverse(found)
     total = np.zeros_like(known)
-    for part, Q, R, root in _decided(found, known):
-        pull = R.T @ root @ (Q.T @ r[part])
+    for e, (_, Q, R, root) in zip(found.evidence.runs, _decided(found, known), strict=True):
+        told = Q.T @ e.r[e.finite] + (0.0 if e.beyond is None else np.linalg.pinv(R.T) @ e.beyond)
+        pull = R.T @ root @ told
         total += np.outer(pull, pull)
     return known @ total @ known
 

@@ -58,11 +58,23 @@ class RunEvidence:
     pushed: np.ndarray | None = None  # (n, nq) errors of the recorded pushes, in the place of such forces
     foretelling: np.ndarray | None = None  # (m,) of a run that was held out, −2 log of how likely each block of it was
     begins: Begin = Begin()
+    beyond: np.ndarray | None = None  # (k,) what the filter's own change tells of each parameter: see `pull`
 
     @cached_property
     def finite(self) -> np.ndarray:
         """Which innovations (n, nz) there are."""
         return np.isfinite(self.r)
+
+    @cached_property
+    def smoothed(self) -> np.ndarray:
+        """See `followed`."""
+        return followed(self)
+
+    @cached_property
+    def pull(self) -> np.ndarray:
+        """−½ the slope of the deviance (k,) by each parameter: Sᵀ r, and what is `beyond`, where somebody has asked for it."""
+        found = self.S[self.finite].T @ self.r[self.finite]
+        return found if self.beyond is None else found + self.beyond
 
     @property
     def uncertain(self) -> dict[str, float]:
@@ -84,7 +96,7 @@ class RunEvidence:
 
     def _bare(self) -> RunEvidence:
         none = np.empty((*self.r.shape, 0))
-        brief = replace(self, S=none, start_S=none, results=np.empty((0, 0)), begins=Begin())
+        brief = replace(self, S=none, start_S=none, results=np.empty((0, 0)), begins=Begin(), beyond=None)
         return brief if self.driven is None else replace(brief, predicted=self.foretold, path=None, added=0.0, driven=None)
 
     @cached_property
@@ -169,6 +181,11 @@ class Evidence:
     def S(self) -> np.ndarray:
         return np.concatenate([e.S[e.finite] for e in self.runs] or [np.empty((0, len(self.by)))])
 
+    @property
+    def pull(self) -> np.ndarray:
+        """−½ the slope of the deviance (k,) by each parameter."""
+        return np.sum([e.pull for e in self.runs], axis=0) if self.runs else np.zeros(len(self.by))
+
     @cached_property
     def deviance(self) -> float:
         """−2 log likelihood, but for a constant."""
@@ -217,7 +234,18 @@ class Evidence:
     def only(self, names: Sequence[str]) -> Evidence:
         """The same evidence with sensitivities by some of its parameters."""
         at = [self.by.index(n) for n in names]
-        return Evidence(tuple(replace(e, S=e.S[:, :, at]) for e in self.runs), tuple(names))
+        some = (replace(e, S=e.S[:, :, at], beyond=None if e.beyond is None else e.beyond[at]) for e in self.runs)
+        return Evidence(tuple(some), tuple(names))
+
+    def led_from(self, other: Evidence) -> Evidence:
+        """The same on paths as far from those of another evidence of these runs as smoothed forces are from its own."""
+        pairs = zip(self.runs, other.runs, strict=True)
+        moved = parallel_map(lambda pair: _led_from(*pair), pairs)
+        return replace(self, runs=tuple(moved))
+
+    def knowing(self, beyond: np.ndarray) -> Evidence:
+        """The same with what filters' own change tells (m, k) in each run."""
+        return replace(self, runs=tuple(replace(e, beyond=row) for e, row in zip(self.runs, beyond, strict=True)))
 
 
 def followed(e: RunEvidence) -> np.ndarray:
@@ -225,6 +253,11 @@ def followed(e: RunEvidence) -> np.ndarray:
     assert isinstance(e.whitener, Marginal)
     filter_ = e.whitener.whitener
     return filter_.smoothed(filter_((e.measured - e.foretold)[:, :, None], e.offset[: filter_.size[0]])[:, :, 0])
+
+
+def _led_from(e: RunEvidence, other: RunEvidence) -> RunEvidence:
+    assert other.path is not None
+    return replace(e, path=other.path + e.smoothed - other.smoothed)
 
 
 def blocks_of(run: Run) -> list[slice]:

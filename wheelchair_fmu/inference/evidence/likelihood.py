@@ -31,9 +31,9 @@ from .noise_model import ALONG, FORCED, MOMENT, RIDER, NoiseModel, disturbance, 
 TOLERANCE = 1e-4  # of the simulation; its error is some hundredths of the best sensor's noise
 BODY = frozenset(BY_NAME[name].fmu for name in BODY_NAMES)  # of the rider, which no logger of pushes records
 LONG = 30_000  # rows: five minutes at 100 Hz, some megabytes
-LED, HELD, STEPPED = 1, 0, -1  # how a run that is led goes on from its path: to where forces lead it, not at all, one step
-MASS = "chair.m"
-INERT = (MASS, "chair.I_z", "chair.b")  # what resists forces and moments
+LED, HELD = 1, 0  # how a run that is led goes on from its path: to where forces lead it, or not at all
+MASS, YAW_INERTIA, AHEAD_OF_AXLE = "chair.m", "chair.I_z", "chair.b"
+INERT = (MASS, YAW_INERTIA, AHEAD_OF_AXLE)  # what resists forces and moments
 
 
 def driven(campaign: Campaign) -> frozenset[str]:
@@ -367,10 +367,10 @@ class Likelihood:
         if not asked:
             return out
         chair, unknown = self.chair(values), self._unknown(run, values)
-        m, b, as_push = chair[MASS], chair["chair.b"], unknown.as_push
+        m, b, as_push = chair[MASS], chair[AHEAD_OF_AXLE], unknown.as_push
         r = found.whitener.states(unknown.pushed(found.path))[:, self._yawing]
         bends, u = np.gradient(r, run.time), found.results[:, self.sensitivities.results.index("chair.u")]
-        resists = {MASS: b * (b * bends + u * r), "chair.I_z": bends, "chair.b": m * (2 * b * bends + u * r)}
+        resists = {MASS: b * (b * bends + u * r), YAW_INERTIA: bends, AHEAD_OF_AXLE: m * (2 * b * bends + u * r)}
         for name in asked:
             less = np.outer(resists[name], as_push[:, MOMENT])
             less += found.path[:, ALONG] @ as_push[:, ALONG].T / m if name == MASS else 0.0
@@ -436,6 +436,12 @@ class Likelihood:
         """The same likelihood with other noise; runs begin where they did."""
         return self._with(noise_model=noise_model)
 
+    def turning(self, before: Mapping[str, float], values: Mapping[str, float]) -> Likelihood:
+        """The same likelihood with forces that turn a chair of these `values` as those here turn one of the values `before`:
+        against its inertia about the rear axle. Those along the heading do so anyway."""
+        was, now = (_about_the_axle(self.chair(one)) for one in (before, values))
+        return self if now == was else self.with_noise_model(self.noise_model.turning(now / was))
+
     def begun(self, begins: Mapping[str, Begin]) -> Likelihood:
         """The same likelihood with these runs, by name, beginning there."""
         return self._with(begins={**self.begins, **begins})
@@ -465,6 +471,11 @@ class Likelihood:
         other = object.__new__(Likelihood)
         other.__dict__ = {**self.__dict__, **changed}
         return other
+
+
+def _about_the_axle(chair: Mapping[str, float]) -> float:
+    """A chair's yaw inertia (kg m²) about its rear axle."""
+    return chair[YAW_INERTIA] + chair[MASS] * chair[AHEAD_OF_AXLE] ** 2
 
 
 def constant(local: Local, channels: Sequence[str], inputs: Sequence[str], n: int) -> Constant:

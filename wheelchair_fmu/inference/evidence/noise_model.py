@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -87,6 +87,10 @@ class NoiseModel:
         for. What they do to a chair is known, and not how large they are: one of another mass needs others for the same, or a
         heavier chair would be likelier for its quieter ride."""
         return mass / self.mass if self.mass else 1.0
+
+    def turning(self, times: float) -> NoiseModel:
+        """The same of a chair that is so many times as hard to turn, which forces turn as they do this one."""
+        return replace(self, moment=times * self.moment, tremor=times * self.tremor, lever=times * self.lever)
 
     @property
     def wrong(self) -> float:

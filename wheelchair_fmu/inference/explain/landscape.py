@@ -16,8 +16,8 @@ from threadpoolctl import threadpool_limits
 from ...errors import SimulationError
 from ...model.variant import effects_in
 from ..chance import chance_beyond, value_beyond
-from ..estimation.fit import Fit
 from ..estimation.interval import LEVEL, NORMAL, half_width, profile
+from ..estimation.problem import Fit
 from ..estimation.statistics import finite
 from ..evidence.likelihood import Likelihood
 from ..models.factory import ModelFactory

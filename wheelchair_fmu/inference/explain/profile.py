@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...model.stage import Effect
-from ..estimation.fit import Fit, prior_of
+from ..estimation.problem import Fit, prior_of
 from ..estimation.score import robust_variance
 from ..models.models import Models
 from ..search.screen import projector

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..estimation.fit import Fit
+from ..estimation.problem import Fit
 from ..evidence.evidence import Evidence
 from ..evidence.likelihood import Likelihood
 from .factory import ModelFactory

@@ -193,6 +193,10 @@ class ModelFactory:
         """Sizes (k,) of effects in a model that lacks them: zero, or what the campaign says, as of where a sensor sits."""
         return np.array([self.campaign.known.get(n, 0.0) for n in names])
 
+    def dry(self, effect: str) -> bool:
+        """Is an effect, or one of a group of them, dry friction?"""
+        return any(p.dry for p in self._owned(effect))
+
     def one_sided(self, names: Sequence[str]) -> np.ndarray:
         """Which of these may only be positive (k,)."""
         return np.array([self.records[n].lower == 0 for n in names], bool)

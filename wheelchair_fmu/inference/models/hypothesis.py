@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from ..estimation.fit import Fit
+from ..estimation.problem import Fit
 from ..evidence.evidence import Evidence
 from .factory import members_of
 

@@ -12,9 +12,10 @@ import numpy as np
 from ...campaign import Campaign
 from ...errors import SimulationError
 from ...model.stage import Effect
-from ..estimation.fit import Fit, Problem, fit, sizes_an_effect, start_values
+from ..estimation.fit import fit
 from ..estimation.foretelling import foretold_by
 from ..estimation.inverse import inverse
+from ..estimation.problem import Fit, Problem, sizes_an_effect, start_values
 from ..estimation.statistics import estimates
 from ..evidence.disturbance import strength
 from ..evidence.evidence import Evidence

@@ -16,7 +16,7 @@ import numpy as np
 
 from ...campaign.strokes import phase
 from ...engine.smoothing import smoothed
-from ..estimation.fit import Fit
+from ..estimation.problem import Fit
 from ..evidence.disturbance import MOST, USUAL, Strength, disturbed
 from ..evidence.evidence import Evidence, RunEvidence
 from ..evidence.likelihood import Likelihood

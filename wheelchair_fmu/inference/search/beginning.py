@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...campaign.recorded import PUSHES_CLOCK
-from ..estimation.fit import Fit, Problem
+from ..estimation.problem import Fit, Problem
 from ..models.factory import STROKE_PHASE
 from ..models.hypothesis import Model
 from ..models.models import Models

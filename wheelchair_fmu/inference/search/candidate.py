@@ -8,8 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ..estimation.fit import Fit
 from ..estimation.marginal import LEAST, Support, squared, support_of
+from ..estimation.problem import Fit
 from ..evidence.evidence import Evidence
 from ..models.factory import members_of
 from ..policy import DEFAULT, SearchPolicy

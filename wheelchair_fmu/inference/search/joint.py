@@ -14,7 +14,7 @@ from itertools import product
 import numpy as np
 
 from ...errors import SimulationError
-from ..estimation.fit import Fit
+from ..estimation.problem import Fit
 from ..estimation.starts import Outlook, most_promising
 from ..models.factory import TOGETHER, ModelFactory
 from ..models.hypothesis import Model

@@ -9,10 +9,10 @@ import numpy as np
 from scipy import special
 
 from ..chance import chance_beyond
-from ..estimation.fit import Fit
 from ..estimation.inverse import inverse
 from ..estimation.left_out import left_out
 from ..estimation.marginal import support_of
+from ..estimation.problem import Fit
 from ..estimation.score import RUNS
 from ..estimation.statistics import between_runs, bounded, correlation_time, held_out_gain, sandwich, seen_directions
 from ..models.hypothesis import Model

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from ...errors import SimulationError
 from ...quantities import Parameter
-from ..estimation.fit import Fit
+from ..estimation.problem import Fit
 from ..estimation.starts import most_promising, outlook
 from ..evidence.evidence import Evidence
 from ..models.factory import ModelFactory
@@ -40,7 +41,7 @@ def candidate(
     if starts:
         models.say(f"refitting {effect}")
     rival = min(rival, base.fit.deviance)  # which it has as a special case
-    found, anew = _best_of(models, effects, starts, rival, frozenset(base.fit.names)), _afresh(models, base, s, least, rival)
+    found, anew = _best_of(models, effects, starts, rival, base.fit), _afresh(models, base, s, least, rival)
     if found is not None and found.deviance > base.fit.deviance and not models.factory.leads:
         found = _from_base(models, base, s, found)
     afresh = anew is not None and (found is None or anew.deviance < found.deviance)
@@ -74,17 +75,16 @@ def risen(before: Fit, after: Fit, policy: SearchPolicy, *, led: bool) -> bool:
     return nothing_left or now > policy.structured * max(1.0, was)
 
 
-def _best_of(
-    models: Models, effects: Sequence[str], starts: Sequence[Start], rival: float, known: frozenset[str]
-) -> Fit | None:
+def _best_of(models: Models, effects: Sequence[str], starts: Sequence[Start], rival: float, base: Fit) -> Fit | None:
     """The most likely model that these starts lead to, one step from each, and to the end from the best. Constants of the
-    effect's law are as its record has them until its size is known: of something small any law would do. `known` is what the
-    model without it was fitted by."""
+    effect's law are as its record has them until its size is known: of something small any law would do. `base` is the fit
+    without it."""
+    known: dict[str, Any] = {"hold": frozenset(base.names), "like": base.evidence}
     constants = models.factory.constants(effects[-1])
 
     def one_step(start: Start) -> Fit | None:
         try:
-            return models.refit(effects, *start, constants, rival=rival, most=1, hold=known)
+            return models.refit(effects, *start, constants, rival=rival, most=1, **known)
         except SimulationError:
             return None
 
@@ -93,11 +93,11 @@ def _best_of(
     for ahead in sorted(begun, key=lambda f: f.deviance)[: models.effort.ended if len(own) > 1 else 1]:
         signs, *others = (_signs([f.values[n] for n in own]) for f in (ahead, *ended))
         if signs not in others:
-            ended.append(models.refit(effects, ahead.values, ahead.evidence, constants, rival=rival, hold=known))
+            ended.append(models.refit(effects, ahead.values, ahead.evidence, constants, rival=rival, **known))
             rival = min(rival, ended[-1].deviance)
     best = min(ended, key=lambda f: f.deviance, default=None)
     try:
-        return models.refit(effects, best.values, hold=known) if best and constants else best
+        return models.refit(effects, best.values, **known) if best and constants else best
     except SimulationError:
         return best  # by the law as its record has it
 

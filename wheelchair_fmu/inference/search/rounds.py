@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 from scipy import special
 
-from ..estimation.fit import Fit
 from ..estimation.marginal import Support
+from ..estimation.problem import Fit
 from ..estimation.score import Score
 from ..estimation.statistics import RESAMPLES, difference_blocks, resampled_totals
 from ..evidence.evidence import Evidence

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -9,7 +10,9 @@ from functools import partial
 import numpy as np
 
 from ...errors import SimulationError
-from ..estimation.fit import Fit, prior_of
+from ..chance import chance_beyond
+from ..estimation.marginal import squared
+from ..estimation.problem import Fit, prior_of
 from ..estimation.score import Projector, Score, score
 from ..estimation.statistics import cosines
 from ..evidence.evidence import Evidence
@@ -19,6 +22,8 @@ from ..models.hypothesis import Model
 from ..models.models import Models
 from ..parallel import parallel_map
 from ..policy import Effort
+
+DRY = (1.0, 2.0, 4.0, 8.0)  # times δ of dry friction, whose likelihood is asked where forces lead the runs
 
 
 @dataclass(frozen=True)
@@ -61,7 +66,7 @@ def screen_groups(models: Models, base: Model) -> tuple[list[Screened], list[Scr
     screened, here = _screened(models, base)
     alone = {s.score.effect: s.score.likelihood_ratio for s in screened}
     groups = [g for g, members in w.groups.items() if set(members) <= set(alone)]
-    joined = _by_secants(models, models.rerun((*base.effects, *groups)), base.fit, here, groups) if groups else []
+    joined = _by_secants(models, models.rerun((*base.effects, *groups)), base, here, groups) if groups else []
     more = (s for s in joined if s.score.likelihood_ratio > models.promising + max(alone[e] for e in w.members(s.score.effect)))
     return screened, sorted(more, key=lambda s: -s.score.likelihood_ratio)
 
@@ -100,7 +105,7 @@ def _screened(models: Models, base: Model, among: Iterable[str] | None = None) -
     for effect in [] if w.leads else [e for e in light if e in models.doubles]:
         found += _by_slopes(models, models.rival_of(effect, base), [effect])[0]
     for more in dear:
-        found += _by_secants(models, models.rerun((*base.effects, *more)), base.fit, here, more)
+        found += _by_secants(models, models.rerun((*base.effects, *more)), base, here, more)
     return sorted(found, key=lambda s: -s.score.likelihood_ratio), here
 
 
@@ -121,17 +126,17 @@ def _by_slopes(models: Models, base: Model, light: Sequence[str]) -> tuple[list[
     return parallel_map(screened, light), here
 
 
-def _by_secants(models: Models, likelihood: Likelihood, base: Fit, here: Evidence, effects: Sequence[str]) -> list[Screened]:
+def _by_secants(models: Models, likelihood: Likelihood, base: Model, here: Evidence, effects: Sequence[str]) -> list[Screened]:
     """Scores of effects with states of their own. To follow these through all derivatives costs more than to try a size, and
     the filters of the model without them serve: at zero they change nothing."""
-    w, at = models.factory, list[tuple[Mapping[str, float], Evidence]]()
-    for values in (base.values, *at_prior_mean(models, likelihood, base, models.effort.slightly)):
+    w, fit, at = models.factory, base.fit, list[tuple[Mapping[str, float], Evidence]]()
+    for values in (fit.values, *at_prior_mean(models, likelihood, fit, models.effort.slightly)):
         try:
             at.append((values, likelihood.resimulated(here, values)))
         except SimulationError:
             if not at:
                 return []
-    off = projector(likelihood, base, here)
+    off = projector(likelihood, fit, here)
 
     def screened(effect: str) -> Screened | None:
         by = [[_score(w, at[0][1], off, effect, S) for S in _secants(w, likelihood, e, values, effect)] for values, e in at]
@@ -139,9 +144,40 @@ def _by_secants(models: Models, likelihood: Likelihood, base: Fit, here: Evidenc
         if not scores:
             return None
         best = _most_promising(models, scores, here, likelihood)
-        return replace(best, straight=all(best.score.likelihood_ratio > score.likelihood_ratio for score in by[0]))
+        straight = all(best.score.likelihood_ratio > score.likelihood_ratio for score in by[0])
+        return replace(best, score=_where_friction_holds(models, base, here, best.score), straight=straight)
 
     return [s for s in parallel_map(screened, effects) if s]
+
+
+def _where_friction_holds(models: Models, base: Model, here: Evidence, told: Score) -> Score:
+    """An effect's score by the likelihood of several sizes, where forces lead the runs and it is dry friction, if that falls
+    by more than slopes say. Along the path of a model in which nothing is held, friction does next to nothing; where it is
+    large forces take another path, by which it shows, and no slope leads there."""
+    w = models.factory
+    if not (w.leads and w.dry(told.effect)):
+        return told
+    dry = np.array([w.records[n].dry for n in told.names])
+    near, off = models.likelihood((*base.effects, told.effect)).beside(here), w.unfitted(told.names)
+    sizes = [off + told.delta * np.where(dry, times, 1.0) for times in DRY]
+
+    def deviance(size: np.ndarray) -> float:
+        there = {**base.fit.values, **dict(zip(told.names, map(float, size), strict=True))}
+        try:
+            return near.evidence(w.campaign.fit, there).deviance
+        except SimulationError:
+            return math.inf
+
+    without, *tried = map(deviance, (off, *sizes))
+    best = int(np.argmin(tried))
+    fall = without - tried[best]
+    if fall <= max(told.likelihood_ratio, 0.0):
+        return told
+    estimate = sizes[best] - off
+    covariance = told.covariance * squared(estimate / told.delta, told.covariance) / fall
+    se = np.sqrt(np.diag(covariance)) * told.delta
+    p = chance_beyond(fall, len(estimate))
+    return replace(told, estimate=estimate, se=se, p=p, likelihood_ratio=fall, covariance=covariance)
 
 
 def _most_promising(models: Models, scores: Sequence[Score], here: Evidence, likelihood: Likelihood) -> Screened:

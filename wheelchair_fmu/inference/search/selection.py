@@ -8,12 +8,12 @@ from dataclasses import dataclass, field, replace
 
 from ...errors import SimulationError
 from ..estimation.calibration import calibration
-from ..estimation.fit import Fit
+from ..estimation.problem import Fit
 from ..evidence.initial_state import TUNING
 from ..models.hypothesis import Model
 from ..models.models import Models
 from ..residual.staircase import Step
-from .beginning import Beginning, first_steps
+from .beginning import LED, Beginning, first_steps
 from .candidate import Candidate
 from .joint import parted, together
 from .judge import surely_large
@@ -185,12 +185,18 @@ class Selection:
         return Step.of(f"+{fewer[-1]}", fitted, held, fit.values)
 
     def up_to(self, models: Models, top: Model) -> Selection:
-        """A step up to another model, by the noise that shows now that its last effect is in."""
+        """A step up to another model, by the noise that shows now that its last effect is in; by forces as it leaves them, of
+        which this model may show once more that they are weaker."""
         now, known = replace(self, models=models, top=top), models.with_noise_of(top.fit, again=True)
         if known is None:
             return now._told(self.ladder)
-        known.say("calibrating with the noise that is left")
-        return replace(now, models=known, noisier=len(self.rounds))._anew(top.effects, top.fit)
+        for _ in range(LED if models.factory.leads else 1):
+            known.say("calibrating with the noise that is left")
+            now = replace(now, models=known, noisier=len(self.rounds))._anew(now.effects, now.top.fit)
+            known = now.models.with_noise_of(now.top.fit, again=True)
+            if known is None:
+                break
+        return now
 
     def _anew(self, effects: tuple[str, ...], found: Fit) -> Selection:
         """The model with these effects, fitted about so, and its staircase, from the first step."""

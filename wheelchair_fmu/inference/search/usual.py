@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import SimulationError
-from ..estimation.fit import Fit, prior_of
+from ..estimation.problem import Fit, prior_of
 from ..models.hypothesis import Model
 from ..models.models import Models
 
