@@ -19,6 +19,7 @@ import numpy as np
 from ...errors import SimulationError
 from ..evidence.evidence import Evidence
 from ..evidence.likelihood import HELD
+from ..parallel import parallel_map
 from .problem import STRAIGHT, Fit, Problem, found_at
 
 NEARBY = 0.1  # standard errors over which the deviance is as good as a parabola
@@ -104,11 +105,12 @@ def knowing(
     known = _told_by(like) if held and like else {}
     if dry and (known or not held):
         for j, name in enumerate(problem.names):
-            if name in known:
-                beyond[:, j] = known[name]
-            elif name not in problem.likelihood.offsets:  # which no filter heeds
-                beyond[:, j], bent = _beyond_slopes(problem, theta, here, j)
-                more[j] = bent if name in dry else 0.0
+            beyond[:, j] = known.get(name, 0.0)
+        offsets = problem.likelihood.offsets  # which no filter heeds
+        asked = [j for j, name in enumerate(problem.names) if name not in known and name not in offsets]
+        found = parallel_map(lambda j: _beyond_slopes(problem, theta, here, j), asked)
+        for j, (told, bent) in zip(asked, found, strict=True):
+            beyond[:, j], more[j] = told, bent if problem.names[j] in dry else 0.0
     return here.knowing(beyond), more
 
 
