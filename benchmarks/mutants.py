@@ -59,7 +59,7 @@ NAMED = (  # file, what stands there once, what stands there instead
     (L + "estimation/led.py", "likelihood.beside(found.led_from(here), HELD).evidence(runs, values)", "found"),
     (L + "estimation/statistics.py", "np.linalg.pinv(R.T) @ e.beyond", "0.0"),
     (L + "estimation/left_out.py", "axes.T @ (e.pull / scale)", "axes.T @ (S.T @ e.r[e.finite] / scale)"),
-    (L + "search/screen.py", "if fall <= max(told.likelihood_ratio, 0.0):", "if fall:"),
+    (L + "search/screen.py", "if not max(told.likelihood_ratio, 0.0) < fall < math.inf:", "if fall:"),
     (L + "search/usual.py", "longer * np.outer(size[of_it], by_constant)", "0.0"),
     (L + "search/usual.py", "(adjusted / usually, by_constant)", "(usually / adjusted, by_constant)"),
     (L + "search/judge.py", "p /= 2", "p /= 1"),

@@ -171,7 +171,7 @@ def _where_friction_holds(models: Models, base: Model, here: Evidence, told: Sco
     without, *tried = map(deviance, (off, *sizes))
     best = int(np.argmin(tried))
     fall = without - tried[best]
-    if fall <= max(told.likelihood_ratio, 0.0):
+    if not max(told.likelihood_ratio, 0.0) < fall < math.inf:
         return told
     estimate = sizes[best] - off
     covariance = told.covariance * squared(estimate / told.delta, told.covariance) / fall

@@ -185,8 +185,8 @@ class Selection:
         return Step.of(f"+{fewer[-1]}", fitted, held, fit.values)
 
     def up_to(self, models: Models, top: Model) -> Selection:
-        """A step up to another model, by the noise that shows now that its last effect is in. What dry friction tells depends on
-        how strong forces are, and these were as strong as a model without it needs: both are found one from another."""
+        """A step up to another model, by the noise that shows now that its last effect is in. What dry friction tells depends
+        on how strong forces are, and these were as strong as a model without it needs: both are found one from another."""
         now, known = replace(self, models=models, top=top), models.with_noise_of(top.fit, again=True)
         if known is None:
             return now._told(self.ladder)
