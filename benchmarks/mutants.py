@@ -77,7 +77,7 @@ NAMED = (  # file, what stands there once, what stands there instead
     ),
     (L + "decision/bootstrap.py", "(0.025, 0.975)", "(0.25, 0.75)"),
     (L + "estimation/interval.py", "student(LEVEL, degrees_between_runs(found, at))", "NORMAL"),
-    (L + "evidence/likelihood.py", '"chair.I_z": bends', '"chair.I_z": 0 * bends'),
+    (L + "evidence/likelihood.py", "YAW_INERTIA: bends", "YAW_INERTIA: 0 * bends"),
     (L + "evidence/disturbance.py", "uneven.tremor / (t_r / 2)", "uneven.tremor / t_r"),
     (L + "evidence/likelihood.py", "np.clip(s, -3 * sd[n], 3 * sd[n])", "np.clip(s, -30 * sd[n], 30 * sd[n])"),
     (L + "evidence/noise_model.py", "-1 / inertia[process]", "0 / inertia[process]"),

@@ -50,8 +50,9 @@ def of_runs(slopes, offs, noise=0.1, n=200):
     r = np.array([noise * rng.normal(size=n) + k * off for k, off in zip(slopes, offs, strict=True)])
     S = np.repeat(np.array(slopes)[:, None], n, axis=1)
     r -= S * np.sum(r * S) / np.sum(S**2)
-    runs = [Some(r=one[:, None], run=Some(time=np.arange(n) / 100)) for one in r]
-    parts = [(run, np.ones((n, 1), bool), slice(i * n, (i + 1) * n)) for i, run in enumerate(runs)]
+    whole = np.ones((n, 1), bool)
+    runs = [Some(r=one[:, None], finite=whole, beyond=None, run=Some(time=np.arange(n) / 100)) for one in r]
+    parts = [(run, whole, slice(i * n, (i + 1) * n)) for i, run in enumerate(runs)]
     evidence = Some(runs=runs, r=r.ravel(), S=S.reshape(-1, 1), parts=lambda: parts)
     return Some(evidence=evidence, prior_slopes=np.zeros((1, 1)))
 
