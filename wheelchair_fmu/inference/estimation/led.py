@@ -6,8 +6,7 @@ estimating equations; Liang and Zeger 1986), and no step is asked whether it mak
 
 But where dry friction holds, what a filter expects depends on what would make it let go. That nothing happens tells of the
 friction, and of all that would have moved what it holds; readings' slopes have none of that, and are off by it. There slopes
-are those of the likelihood itself. It is rough, as friction lets go a little earlier or later: no step is asked even there
-whether it makes the likelihood larger, or the least of many dips would be taken for its end.
+are those of the likelihood itself, and a step that makes it as much larger as they promise is taken for that.
 """
 
 from __future__ import annotations
@@ -24,6 +23,7 @@ from ..parallel import parallel_map
 from .problem import STRAIGHT, Fit, Problem, found_at
 
 NEARBY = 0.1  # standard errors over which the deviance is as good as a parabola
+ENOUGH = 0.25  # of a fall that slopes promise: a step that does so much goes the right way, however slopes bend
 LEAST_SHARE = 0.2  # of a step that is tried
 
 
@@ -38,6 +38,14 @@ class _Place:
     step: np.ndarray
     promised: float
 
+    @property
+    def deviance(self) -> float:
+        return self.problem.deviance(self.here, self.theta)
+
+    def likelier(self, other: _Place) -> bool:
+        """Is it, than another place, by as much as counts of what slopes promised there?"""
+        return other.deviance - self.deviance > max(STRAIGHT, ENOUGH * other.promised)
+
 
 def fit_led(
     problem: Problem, theta: np.ndarray, here: Evidence, most: int, hold: Container[str] = (), like: Evidence | None = None
@@ -47,11 +55,12 @@ def fit_led(
     if not problem.names:
         return found_at(problem, theta, here)
     place, share = _place(problem, theta, here, hold, like), 1.0
+    slips = any(name not in hold for name in _dry(problem))
     for _ in range(most):
         if place.promised < STRAIGHT:
             break
         there = _tried(place, share, hold, like)
-        if there and there.promised < place.promised:
+        if there and (there.promised < place.promised or (slips and there.likelier(place))):
             place, share = there, 1.0
         elif share > LEAST_SHARE:
             share /= 2
