@@ -1,6 +1,5 @@
 """Lab folders from raw files to the verdict, beside what was hidden: `python -m benchmarks.labs [LAB ...] [--drawn SEED ...]
-[--casters]
-[--worn]`.
+[--casters] [--worn]`.
 
 A number after `--drawn` is a lab that benchmarks/independent/labs.py draws. Each is imported as docs/lab.md does it, with the
 lines of its protocol that no file holds, and diagnosed. Printed is what is said, and how far off: clocks and baselines in
@@ -236,6 +235,8 @@ def main() -> None:
     parser.add_argument("--worn", action="store_true", help="draw labs whose casters hold, of a heavy rider who was filmed")
     parser.add_argument("--out", type=Path, default=Path("out/labs"), help="what was found is kept here")
     chosen = parser.parse_args()
+    if chosen.worn and not chosen.drawn:
+        parser.error("--worn says what labs are drawn; name their seeds by --drawn SEED ...")
     chosen.out.mkdir(parents=True, exist_ok=True)
     more = CASTERS if chosen.casters else {}
     for name in chosen.labs or ([] if chosen.drawn else GIVEN):

@@ -6,7 +6,7 @@ estimating equations; Liang and Zeger 1986), and no step is asked whether it mak
 
 But where dry friction holds, what a filter expects depends on what would make it let go. That nothing happens tells of the
 friction, and of all that would have moved what it holds; readings' slopes have none of that, and are off by it. There slopes
-are those of the likelihood itself, and a step that makes it as much larger as they promise is taken for that.
+are those of the likelihood itself, and a step that makes it larger by a good part of what they promise is taken for that.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ from scipy.optimize import least_squares
 
 from ...errors import SimulationError
 from ..evidence.evidence import Evidence
-from ..evidence.likelihood import LED, Likelihood
+from ..evidence.likelihood import Likelihood
 from .inverse import inverse
 
 GROUPED = 10.0  # δ: standard deviation of each of several parameters of one effect, where the data say nothing of it
@@ -123,9 +123,9 @@ class Problem:
         """The same with runs that begin where evidence has found that they do."""
         return Problem(self.likelihood.continued(found), self.names)
 
-    def beside(self, here: Evidence, goes: int = LED) -> Problem:
-        """The same with runs that go on so from the paths on which evidence has them: those of values nearby are close."""
-        return Problem(self.likelihood.beside(here, goes), self.names)
+    def beside(self, here: Evidence) -> Problem:
+        """The same with runs that go on from the paths on which evidence has them: those of values nearby are close."""
+        return Problem(self.likelihood.beside(here), self.names)
 
     def squares(self, here: Evidence, theta: np.ndarray) -> float:
         """What a descent makes small: squared innovations, and the prior's."""
@@ -217,6 +217,7 @@ class Problem:
 
 
 def found_at(problem: Problem, theta: np.ndarray, here: Evidence) -> Fit:
+    """The fit that has ended at values (k,), with the evidence at them."""
     covariance = inverse(problem.information(here)) if len(theta) else np.zeros((0, 0))
     values, deviance, prior = problem.values(theta), problem.deviance(here, theta), problem.prior.slopes
     return Fit(problem.names, values, covariance, here, deviance, prior, problem.lower, problem.upper)

@@ -67,7 +67,7 @@ class RunEvidence:
 
     @cached_property
     def smoothed(self) -> np.ndarray:
-        """See `followed`."""
+        """The forces (n, nd) that nobody recorded, as all readings have them, once for all values nearby."""
         return followed(self)
 
     @cached_property

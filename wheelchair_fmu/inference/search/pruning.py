@@ -11,10 +11,11 @@ from ..models.models import Models
 
 def pruned(models: Models, effects: tuple[str, ...], found: Fit, keep: Container[str] = ()) -> tuple[tuple[str, ...], Fit]:
     """Leave out every effect but the last, and those to `keep`, that the others have made needless."""
+    leads = models.factory.leads
     for effect in effects[:-1]:
         weight = models.weight(found, effect)
-        by_errors = models.factory.leads and not models.factory.dry(effect)  # of what holds, likelihoods tell more than slopes
-        plain = models.policy.tied * (models.effort.plainly if not models.factory.leads else 1.0)
+        plain = models.policy.tied * (1.0 if leads else models.effort.plainly)
+        by_errors = leads and not models.factory.dry(effect)  # of what holds, likelihoods tell more than slopes
         if effect in keep or weight > plain:
             continue  # by its standard errors it is so far from zero that nobody needs to try without
         fewer = tuple(e for e in effects if e != effect)

@@ -187,17 +187,15 @@ class Selection:
     def up_to(self, models: Models, top: Model) -> Selection:
         """A step up to another model, by the noise that shows now that its last effect is in. What dry friction tells depends
         on how strong forces are, and these were as strong as a model without it needs: both are found one from another."""
-        now, known = replace(self, models=models, top=top), models.with_noise_of(top.fit, again=True)
-        if known is None:
-            return now._told(self.ladder)
+        now, anew = replace(self, models=models, top=top), None
         slips = models.factory.leads and any(map(models.factory.dry, top.effects))
         for _ in range(LED if slips else 1):
-            known.say("calibrating with the noise that is left")
-            now = replace(now, models=known, noisier=len(self.rounds))._anew(now.effects, now.top.fit)
             known = now.models.with_noise_of(now.top.fit, again=True)
             if known is None:
                 break
-        return now
+            known.say("calibrating with the noise that is left")
+            now = anew = replace(now, models=known, noisier=len(self.rounds))._anew(now.effects, now.top.fit)
+        return anew or now._told(self.ladder)
 
     def _anew(self, effects: tuple[str, ...], found: Fit) -> Selection:
         """The model with these effects, fitted about so, and its staircase, from the first step."""
